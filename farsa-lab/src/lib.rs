@@ -30,6 +30,8 @@ mod ranks;
 mod report;
 mod run;
 mod run_directory;
+#[cfg(feature = "command")]
+mod shell;
 mod store;
 pub mod strategy;
 #[cfg(feature = "command")]

@@ -84,13 +84,19 @@ fn trials_that_all_break_down_have_no_value() {
     let said = ok(farsa(), &here, &format!("{run} --replications 2 --out runs"));
     assert!(said.contains("champions without a fitness: 2 of 2\n"), "{said}");
     assert!(said.lines().nth(1).is_some_and(|line| line.contains("  –  ") && line.ends_with(" 40")), "{said}");
+    let said = ok(farsa(), &here, &format!("{run} --replications 2 --out runs --test 3"));
+    let cells: Vec<&str> = said.lines().nth(1).expect("a run").split_whitespace().collect();
+    assert_eq!(cells[cells.len() - 4..], ["40", "–", "–", "3"], "{said}");
     fs::write(
         here.join("grid.toml"),
         "experiment = \"whip.toml\"\nevolution.generations = 1\nevolution.population = 20\n\
         [grid]\nepisode.steps = [50, 60]\n",
     )
     .expect("the sweep");
-    let said = ok(farsa(), &here, "sweep grid.toml --out grid");
+    let said = ok(farsa(), &here, "sweep grid.toml --out grid --test 2");
+    assert!(
+        said.lines().next().is_some_and(|head| head.contains("  failed  median success  broken down  without value  "))
+    );
     let cells: Vec<&str> = said.lines().nth(1).expect("a point").split_whitespace().collect();
-    assert_eq!(cells[..7], ["1", "1", "of", "1", "–", "–", "20"], "{said}");
+    assert_eq!(cells[..10], ["1", "1", "of", "1", "–", "–", "20", "–", "2", "1"], "{said}");
 }

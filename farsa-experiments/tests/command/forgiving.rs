@@ -12,7 +12,10 @@ fn help_of_a_subcommand_is_its_own() {
         assert_eq!(help, ok(farsa(), &here, &format!("{subcommand} --help")), "{subcommand}");
         assert!(help.contains(&format!("Usage: farsa {subcommand}")), "{help}");
     }
-    assert_eq!(ok(farsa(), &here, "help"), ok(farsa(), &here, "--help"));
+    for line in ["help", "help help", "-q help"] {
+        assert_eq!(ok(farsa(), &here, line), ok(farsa(), &here, "--help"), "{line}");
+    }
+    assert_eq!(ok(farsa(), &here, "-q help run"), ok(farsa(), &here, "run --help"));
     let said = say(farsa(), &here, "help rum");
     assert!(said.code == Some(2) && said.err.contains("'run'"), "{said:?}");
 }
@@ -107,6 +110,13 @@ fn the_end_of_a_run_names_the_next_commands() {
     }
     assert!(here.join("trials.html").is_file() && here.join("r/test.csv").is_file());
     assert!(!ok(own(), &here, "run cart --generations 1 --seed 2 --json").contains("--resume"));
+    // Only commands that are accepted and left to do.
+    let tested = ok(own(), &here, "run cart --generations 1 --seed 3 --test 2");
+    let steps: Vec<&str> = tested.lines().skip(2).filter_map(|line| Some(line.split_once(':')?.0)).collect();
+    assert_eq!(steps, ["look", "continue"], "{tested}");
+    let single = ok(farsa(), &here, "run braitenberg");
+    let steps: Vec<&str> = single.lines().skip(1).filter_map(|line| Some(line.split_once(':')?.0)).collect();
+    assert_eq!(steps, ["look", "test"], "{single}");
 }
 
 /// Splits a line with single quotes.
@@ -181,12 +191,17 @@ fn a_setting_of_another_strategy_names_both() {
 }
 
 #[test]
-fn a_long_test_is_shortened() {
+fn a_file_has_all_trials_of_a_long_test() {
     let here = scratch("long-test");
     ok(own(), &here, "run cart --generations 1 --out r --quiet");
-    let text = ok(own(), &here, "test r --trials 201");
-    assert!(text.contains("\n   19 ") && !text.contains("\n   20 "), "{text}");
-    assert!(text.contains("\n... 181 more trials; test.csv holds all trials of a champion\n"), "{text}");
-    assert_eq!(fs::read_to_string(here.join("r/test.csv")).expect("the test").lines().count(), 202);
-    assert_eq!(ok(own(), &here, "test r --trials 200").matches("\n  199 ").count(), 1);
+    // An individual of a generation has no test.csv.
+    for (individual, is_champion) in [("--generation 0", false), ("", true)] {
+        let line = format!("test r --trials 201 {individual}");
+        let text = ok(own(), &here, line.trim_end());
+        for index in 0..201 {
+            assert_eq!(text.matches(&format!("\n{index:>5} ")).count(), 1, "{index}: {text}");
+        }
+        assert!(!text.contains("more trials"), "{text}");
+        assert_eq!(here.join("r/test.csv").exists(), is_champion);
+    }
 }

@@ -5,6 +5,10 @@ use std::path::Path;
 
 use serde_json::Value;
 
+#[cfg(target_os = "linux")]
+use crate::tool::command;
+#[cfg(unix)]
+use crate::tool::{Running, interruptible};
 use crate::tool::{farsa, ok, own, scratch};
 
 fn json(text: &str) -> Value {
@@ -34,6 +38,16 @@ fn an_experiment_without_a_criterion_has_no_share_of_successes() {
 
     let run = ok(farsa(), &here, "run follow.toml --generations 1 --population 8 --set episode.steps=20 --out r");
     assert!(run.contains(" (mean of 8 trials)\n"), "{run}");
+    let small = "--generations 1 --population 8 --set episode.steps=20";
+    let test = ok(farsa(), &here, &format!("run follow.toml {small} --out t --test 1"));
+    assert!(test.contains("\ntest of 1 trial: no criterion of success, mean fitness of a trial "), "{test}");
+    let sweep = "experiment = \"follow.toml\"\nevolution.generations = 1\nevolution.population = 8\n[grid]\nepisode.steps = [20, 30]\n[test]\ntrials = 1\n";
+    fs::write(here.join("sweep.toml"), sweep).expect("the sweep");
+    let replications = format!("run follow.toml {small} --replications 1 --out runs --test 1");
+    for line in [&replications, "sweep sweep.toml"] {
+        let table = ok(farsa(), &here, line);
+        assert!(table.lines().nth(1).is_some_and(|line| line.contains("  no criterion  ")), "{table}");
+    }
     let tested = ok(farsa(), &here, "test r --trials 5");
     assert!(tested.contains("\nsuccess: no criterion\nfitness of a trial: mean "), "{tested}");
     assert!(tested.contains("fitness of a run: mean of 8 trials\n"), "{tested}");
@@ -121,13 +135,57 @@ fn champions_of_many_runs_are_tested_when_asked() {
         "experiment = \"cart\"\nevolution.generations = 1\n[grid]\ncart.friction = [0.5, 1.0]\n[test]\ntrials = 4\n";
     fs::write(here.join("grid.toml"), file).expect("the sweep");
     let said = ok(own(), &here, "sweep grid.toml --out grid");
-    assert!(said.starts_with("point  finished  median") && said.contains("  test success  directory\n"), "{said}");
+    assert!(said.starts_with("point  finished  median fitness  quartiles"), "{said}");
+    assert!(said.contains("  median success  directory\n"), "{said}");
     for friction in ["0.5", "1.0"] {
         let record = json(&read(&here.join(format!("grid/friction={friction}/cart-rough-1/test.json"))));
         assert_eq!(record["trials"], 4);
     }
     ok(own(), &here, "sweep grid.toml --out grid --test 6 --quiet");
     assert_eq!(json(&read(&here.join("grid/friction=0.5/cart-rough-1/test.json")))["trials"], 6);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_stopped_test_names_the_command_that_repeats_it() {
+    let here = scratch("stopped-tests");
+    // Without the stop, the test of 400000 trials takes minutes.
+    let long = ["--generations", "1", "--test", "400000"];
+    let arguments = |first: &[&'static str]| [first, &long].concat();
+    let slow = ["run", "cart", "--set", "trial.steps=5000", "--set", "cart.friction=5"];
+    let single = [&slow[..], &["--out", "my run"]].concat();
+    let several = [&slow[..], &["--out", "my runs", "--replications", "1"]].concat();
+    for (first, directory, resume) in [
+        (single, "my run", "run --resume 'my run' --test 400000".to_owned()),
+        (
+            several,
+            "my runs/cart-rough-1",
+            format!("{} --out 'my runs' --replications 1 {}", slow.join(" "), long.join(" ")),
+        ),
+    ] {
+        let mut program = Running::start(&mut interruptible(own(), &here, &arguments(&first)));
+        let log = here.join(directory).join("fitness.csv");
+        program.until("end of the run", || fs::read_to_string(&log).is_ok_and(|text| text.lines().count() == 2));
+        program.signal("INT");
+        let said = program.end();
+        assert_eq!(said.code, Some(130), "{said:?}");
+        assert!(said.err.contains(&format!("interrupted; go on with `own-experiment {resume}`")), "{said:?}");
+        assert!(!here.join(directory).join("test.csv").exists());
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_in_a_directory_of_any_name_is_tested() {
+    use std::os::unix::ffi::OsStrExt as _;
+
+    let here = scratch("any-name");
+    let name = std::ffi::OsStr::from_bytes(b"r\xff");
+    let line: Vec<&std::ffi::OsStr> =
+        ["run", "cart", "--generations", "1", "--test", "3", "--out"].map(std::ffi::OsStr::new).into();
+    let output = command(own(), &here, &[&line[..], &[name]].concat()).output().expect("the program");
+    assert!(output.status.success(), "{output:?}");
+    assert!(here.join(name).join("test.csv").is_file());
 }
 
 #[test]
@@ -148,10 +206,8 @@ fn curves_of_runs_are_one_long_table() {
         let log = read(&here.join(format!("runs/cart-{seed}/fitness.csv")));
         let log = rows(&log);
         let line = &log[1 + generation];
-        let failed = |line: &Vec<&str>| line[5].parse::<usize>().expect("a number");
-        let failed: usize = log[1..2 + generation].iter().map(failed).sum();
         assert_eq!(row[..5].join(","), format!("runs/cart-{seed},cart,rough,truncation,{seed}"));
-        assert_eq!(row[5..9].join(","), format!(",{generation},{},{failed}", 20 * (generation + 1)));
+        assert_eq!(row[5..9].join(","), format!(",{generation},20,{}", line[5]));
         assert_eq!(row[9..], line[1..4]);
     }
     // The populations have their names, in the log and in the table.
@@ -161,10 +217,7 @@ fn curves_of_runs_are_one_long_table() {
     assert_eq!(log[0][6..].join(","), "best predator,mean predator,worst predator,best prey,mean prey,worst prey");
     for (number, row) in found[1..].iter().enumerate() {
         let (generation, population) = (number / 2, number % 2);
-        assert_eq!(
-            row[5..8].join(","),
-            format!("{},{generation},{}", ["predator", "prey"][population], 32 * (generation + 1))
-        );
+        assert_eq!(row[5..8].join(","), format!("{},{generation},32", ["predator", "prey"][population]));
         assert_eq!(row[9..], log[1 + generation][6 + 3 * population..9 + 3 * population]);
     }
     assert_eq!(found.len(), 1 + 2 * 2);

@@ -187,7 +187,7 @@ fn processes_on_one_folder_share_the_runs() {
             // Runs that one process does not report belong to the other.
             let elsewhere = json["elsewhere"].as_array().map_or(0, Vec::len);
             assert_eq!(runs.len() + elsewhere, 6, "{said:?}");
-            assert_eq!(said.err.contains("same command again"), elsewhere > 0, "{said:?}");
+            assert_eq!(said.err.contains("repeat the command"), elsewhere > 0, "{said:?}");
             let mine = runs.iter().filter(|run| run["skipped"] == false);
             made.extend(mine.map(|run| run["seed"].as_u64().expect("a seed")));
         }
@@ -225,7 +225,7 @@ fn a_run_that_another_process_has_is_left_to_it() {
     assert_eq!((said.code, only.code), (Some(0), Some(0)), "{said:?} {only:?}");
     let busy = "replication 2 of 3: runs/cart-rough-2: another process is at it";
     assert!(said.err.contains(busy) && only.err.contains(busy), "{said:?} {only:?}");
-    let others = "another process is at 1 run: the same command again says what came of it";
+    let others = "another process is at 1 run: repeat the command for the result";
     assert!(said.err.contains(others) && only.err.contains(others), "{said:?} {only:?}");
     assert_eq!([1, 2, 3].map(|seed| generations(&here.join(format!("runs/cart-rough-{seed}")))), [4, 2, 4]);
     let said = say(own(), &here, run);

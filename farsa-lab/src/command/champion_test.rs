@@ -1,7 +1,6 @@
 //! `--test` of `farsa run` and `farsa sweep`: tests of the champions of finished runs.
 
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 use crate::command::arguments::shared::WorkerArgs;
 use crate::command::interrupt::stop_on_signals;
@@ -9,7 +8,9 @@ use crate::command::invocation::Invocation;
 use crate::error::{Error, FileFault};
 use crate::evaluation::findings::Findings;
 use crate::evaluation::test;
+use crate::run::evaluation_backend::Unfinished;
 use crate::run::summary::{ChampionTest, Summary};
+use crate::shell::again;
 
 /// Seed of the tests, the default one of `farsa test`.
 const SEED: u64 = 1;
@@ -20,7 +21,7 @@ impl Invocation<'_, '_> {
     /// A run whose test another process is writing has no result here.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] between two tests, and the errors of tests.
+    /// [`Error::Interrupted`] with the command line of this process, and the errors of tests.
     pub(super) fn test_champions<'s>(
         &self,
         runs: impl Iterator<Item = &'s mut Summary>,
@@ -29,28 +30,27 @@ impl Invocation<'_, '_> {
     ) -> Result<(), Error> {
         let Some(trials) = trials else { return Ok(()) };
         for run in runs {
-            if stop_on_signals().load(Ordering::Relaxed) {
-                let resume = format!("{} test {}", self.program, run.directory);
-                return Err(Error::Interrupted { resume });
-            }
-            run.test = match self.champion_test(Path::new(&run.directory), trials as usize, workers) {
-                Err(Error::File { fault: FileFault::Occupied, .. }) => None,
-                found => {
-                    let Findings { trials, broken_down, rate, fitness, .. } = found?;
-                    let finite = |x: f64| Some(x).filter(|x| x.is_finite());
-                    Some(ChampionTest { trials, broken_down, success: finite(rate), fitness: finite(fitness) })
+            run.test = match self.champion_test(&run.directory, trials as usize, workers) {
+                Err(Unfinished::Error(Error::File { fault: FileFault::Occupied, .. })) => None,
+                Err(Unfinished::Stopped) => return Err(Error::Interrupted { resume: again(self.program) }),
+                findings => {
+                    let Findings { trials, successes, broken_down, rate, fitness, .. } = findings?;
+                    let [success, fitness] = [rate, fitness].map(|x| Some(x).filter(|x| x.is_finite()));
+                    let has_criterion = successes.is_some();
+                    Some(ChampionTest { trials, broken_down, success, has_criterion, fitness })
                 }
             };
         }
         Ok(())
     }
 
-    fn champion_test(&self, path: &Path, trials: usize, workers: &WorkerArgs) -> Result<Findings, Error> {
+    fn champion_test(&self, path: &Path, trials: usize, workers: &WorkerArgs) -> Result<Findings, Unfinished> {
         let (directory, plan) = self.existing(path)?;
         if let Some(findings) = test::repeated(&plan, &directory, trials, SEED)? {
             return Ok(findings);
         }
         let (threads, lanes) = (workers.threads(), workers.lanes());
-        Ok(test::test(&plan, &directory, None, trials, SEED, threads, lanes, self.quiet)?.findings)
+        let stop = stop_on_signals();
+        Ok(test::test_until(stop, &plan, &directory, None, trials, SEED, threads, lanes, self.quiet)?.findings)
     }
 }

@@ -1,7 +1,7 @@
 //! `main` for any set of experiments.
 
 use std::ffi::OsString;
-use std::io::{self, Write as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::rc::Rc;
@@ -39,6 +39,7 @@ use crate::run::replications::{self, Replications};
 use crate::run::sample::Sample;
 use crate::run::summary::Summary;
 use crate::run::{evolve, world_choice};
+use crate::shell::resume_command;
 use crate::store::directory::Directory;
 use crate::store::replace::create_results;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
@@ -179,8 +180,8 @@ impl<'e> Invocation<'e, '_> {
                 self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Run(args) => {
-                let summary = self.start_or_resume(&args)?;
-                let text = format!("{}\n{}", summary.text(), next::after_run(&summary));
+                let (summary, plan) = self.start_or_resume(&args)?;
+                let text = format!("{}\n{}", summary.text(), next::after_run(&summary, &plan));
                 self.summary(args.json, &text, &|| pretty(&summary))
             }
             Command::Sweep(args) => {
@@ -271,7 +272,7 @@ impl<'e> Invocation<'e, '_> {
         }
         let trials = trials.unwrap_or(test::TRIALS);
         let summary = test::test(&plan, &directory, which, trials, seed, threads, lanes, quiet)?;
-        self.summary(json, &summary.text(), &|| pretty(&summary))
+        self.summary(json, &summary.text(io::stdout().is_terminal()), &|| pretty(&summary))
     }
 
     /// Prints the summary, or JSON even with `--quiet`.
@@ -341,7 +342,7 @@ impl<'e> Invocation<'e, '_> {
         Ok(found)
     }
 
-    fn start_or_resume(&self, args: &RunArgs) -> Result<Summary, Error> {
+    fn start_or_resume(&self, args: &RunArgs) -> Result<(Summary, Plan<'e>), Error> {
         let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
         let (directory, plan) = self.planned(args, file.as_ref())?;
         // A refused run leaves no directory.
@@ -356,9 +357,18 @@ impl<'e> Invocation<'e, '_> {
             begin::create(&plan, &path)?
         };
         let summary = evolve::continue_run(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet);
-        let mut summary = summary?;
-        self.test_champions(std::iter::once(&mut summary), args.test, &args.workers)?;
-        Ok(summary)
+        let summary = summary.and_then(|mut summary| {
+            self.test_champions(std::iter::once(&mut summary), args.test, &args.workers)?;
+            Ok(summary)
+        });
+        let summary = summary.map_err(|error| match error {
+            Error::Interrupted { .. } => {
+                let test = args.test.map_or_else(String::new, |trials| format!(" --test {trials}"));
+                Error::Interrupted { resume: resume_command(self.program, directory.path()) + &test }
+            }
+            error => error,
+        })?;
+        Ok((summary, plan))
     }
 
     /// Renames an existing run for `--force`, if the new one can start.

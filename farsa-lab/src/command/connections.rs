@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use crate::command::behaviour::BehaviourInfo;
 use crate::error::Error;
-use crate::evaluation::trials::NO_CRITERION;
 use crate::experiment::controller_export::{MotorDrive, SensorReading};
 use crate::experiment::evaluator::Task;
+use crate::experiment::outcome::NO_CRITERION;
 use crate::experiment::outcome::{ChannelGroup, Combination, Description};
 use crate::experiment::parameter::Parameter;
 use crate::run::plan::Plan;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
@@ -90,9 +91,7 @@ impl Evaluation {
     /// Summarizes the results of a task.
     fn new(plan: &Plan<'_>, seed: u64, info: &TaskInfo, results: &[TrialResult]) -> Self {
         let names = &info.populations;
-        let finite =
-            |results: &&TrialResult| results.fitness.is_finite() && results.others.iter().all(|(x, _)| x.is_finite());
-        let finished: Vec<&TrialResult> = results.iter().filter(finite).collect();
+        let finished: Vec<&TrialResult> = results.iter().filter(|result| result.failure.is_none()).collect();
         let broken_down = results.len() - finished.len();
         let mut notes: Vec<(String, f64)> = Vec::new();
         let first_notes = finished.first().map_or(&[][..], |results| &results.outcome.notes);
@@ -190,7 +189,8 @@ pub(crate) fn evaluate(
     let size = if names.len() > 1 { plan.size()? } else { 0 };
     let progress = Progress::of_trials(trials, quiet);
     let given = Tested { parameters: &parameters, size, normalisation: None };
-    let results = test::run_trials(&mut pool, given, Trials::plain(trials, seed), &progress);
+    let never = AtomicBool::new(false);
+    let results = test::run_trials(&mut pool, given, Trials::plain(trials, seed), &never, &progress);
     drop(progress);
     let results = results?;
     Ok(Evaluation::new(plan, seed, pool.info(), &results))

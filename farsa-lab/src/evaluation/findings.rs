@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use serde::{Serialize, Serializer};
 
-use crate::evaluation::trials::{NO_CRITERION, NO_VALUE};
+use crate::evaluation::trials::NO_VALUE;
+use crate::experiment::outcome::NO_CRITERION;
 use crate::figures::significant::significant;
 
 /// Summary of the trials of a test.
@@ -108,7 +109,7 @@ impl Findings {
         format!("{successes} of {} ({rate:.1} %, 95 % interval {low:.1} to {high:.1} %)", self.trials)
     }
 
-    /// A number of trials as a part of all.
+    /// Returns the share of a number of trials.
     pub(crate) fn part(&self, trials: usize) -> f64 {
         trials as f64 / self.trials.max(1) as f64
     }

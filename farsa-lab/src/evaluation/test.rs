@@ -11,7 +11,7 @@ use crate::evaluation::findings::Findings;
 use crate::evaluation::recorded::{self, TableRecord};
 use crate::evaluation::replay::{LocatedIndividual, Selection};
 use crate::evaluation::test_table::{Columns, Table, TrialResult};
-use crate::evaluation::trials::episode;
+use crate::evaluation::trials::{episode, why_failed};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluation;
 use crate::experiment::intervention::Intervention;
@@ -113,10 +113,11 @@ pub(crate) struct TestRun {
 }
 
 impl TestRun {
-    /// Formats the table and its summary as text.
-    pub(crate) fn text(&self) -> String {
+    /// Formats the table and its summary as text. A terminal shows a part of a long table.
+    pub(crate) fn text(&self, is_terminal: bool) -> String {
         let Self { generation, individual, seed, .. } = self;
-        let mut text = shortened(self.table.aligned());
+        let table = self.table.aligned();
+        let mut text = if is_terminal { shortened(table) } else { table };
         // Writing into a string cannot fail.
         let _ = writeln!(text, "\n{}, test seed {seed}", whose(*generation, *individual, &self.individuals));
         text.push_str(&self.findings.text());
@@ -133,11 +134,11 @@ impl TestRun {
     }
 }
 
-/// Shortens a long table, of which `test.csv` has all lines.
+/// Shortens a long table.
 fn shortened(table: String) -> String {
     let Some(trials) = table.lines().count().checked_sub(1).filter(|trials| *trials > MAX_SHOWN) else { return table };
     let lines = table.lines().take(1 + SHOWN).collect::<Vec<_>>().join("\n");
-    format!("{lines}\n... {} more trials; test.csv holds all trials of a champion\n", trials - SHOWN)
+    format!("{lines}\n... {} more trials; for all add `| less`\n", trials - SHOWN)
 }
 
 /// Runs `trials` fresh trials of the champion and writes `test.csv`. Writes no file for another individual, such as one
@@ -155,6 +156,24 @@ pub(crate) fn test(
     lanes: LaneRequest,
     quiet: bool,
 ) -> Result<TestRun, Error> {
+    Ok(test_until(&AtomicBool::new(false), plan, directory, other, trials, seed, threads, lanes, quiet)?)
+}
+
+/// Tests as [`test`] does, until `stop` becomes true.
+///
+/// # Errors
+/// [`Unfinished::Stopped`] if the test was stopped, after which no file is written.
+pub(crate) fn test_until(
+    stop: &AtomicBool,
+    plan: &Plan<'_>,
+    directory: &Directory,
+    other: Option<Selection>,
+    trials: usize,
+    seed: u64,
+    threads: usize,
+    lanes: LaneRequest,
+    quiet: bool,
+) -> Result<TestRun, Unfinished> {
     let mut pool = Pool::new(plan, threads, lanes)?;
     let subject = match other {
         Some(which) => Subject::find(plan, directory, &pool, which)?,
@@ -165,12 +184,12 @@ pub(crate) fn test(
         drop(Lock::of_tests(directory.path())?);
     }
     let progress = Progress::of_trials(trials, quiet);
-    let results = run_trials(&mut pool, subject.tested(), Trials::plain(trials, seed), &progress);
+    let results = run_trials(&mut pool, subject.tested(), Trials::plain(trials, seed), stop, &progress);
     drop(progress);
     let results = results?;
 
     let info = pool.info();
-    let failure = failure(&results, &info.terms);
+    let failure = failure(&results);
     let table = Table::new(&Columns::new(info, subject.count()), &results);
     let (findings, combined) = (table.findings(&info.terms), info.combined());
     let Subject { generation, individual, individuals, warning, .. } = subject;
@@ -200,14 +219,9 @@ pub(crate) fn whose(generation: u32, individual: u32, individuals: &[u32]) -> St
     }
 }
 
-/// Why the first of the trials that failed did, if any did.
-pub(crate) fn failure(results: &[TrialResult], terms: &[String]) -> Option<String> {
-    let why = |found: &TrialResult| {
-        let fitness = found.fitness;
-        let other = || (!fitness.is_finite()).then(|| format!("the fitness of the trial is {fitness}"));
-        found.outcome.why_failed(terms).or_else(other)
-    };
-    let failed = results.iter().enumerate().find_map(|(number, found)| Some((number, why(found)?)));
+/// Returns the number of the first failed trial with its reason, if any failed.
+pub(crate) fn failure(results: &[TrialResult]) -> Option<String> {
+    let failed = results.iter().enumerate().find_map(|(number, result)| Some((number, result.failure.as_ref()?)));
     failed.map(|(number, why)| format!("line {number} of the test failed: {why}"))
 }
 
@@ -324,11 +338,12 @@ impl Trials<'_> {
     }
 }
 
-/// Evaluates fresh trials of some parameters, case after case.
+/// Evaluates fresh trials of some parameters, case after case, until `stop` becomes true.
 pub(crate) fn run_trials(
     pool: &mut Pool<'_>,
     tested: Tested<'_>,
     trials: Trials<'_>,
+    stop: &AtomicBool,
     progress: &Progress,
 ) -> Result<Vec<TrialResult>, Unfinished> {
     let Tested { parameters: champions, size, normalisation } = tested;
@@ -350,20 +365,33 @@ pub(crate) fn run_trials(
         }
     };
     let evaluations = trials.count * trials.cases.len();
-    let outcomes = pool.evaluate(evaluations * count, &AtomicBool::new(false), task, done)?;
-    let fitness = |outcome: &Outcome| {
-        let alone = std::slice::from_ref(outcome);
-        if outcome.is_finite() { pool.evaluator().fitness(alone) } else { f64::NAN }
-    };
+    let outcomes = pool.evaluate(evaluations * count, stop, task, done)?;
+    let (evaluator, names) = (pool.evaluator(), &pool.info().populations);
     let mut results: Vec<TrialResult> = Vec::with_capacity(evaluations);
     for (number, outcome) in outcomes.into_iter().flatten().enumerate() {
-        let earned = fitness(&outcome);
+        let fitness = if outcome.is_finite() { evaluator.fitness(std::slice::from_ref(&outcome)) } else { f64::NAN };
+        let failure = if fitness.is_finite() { None } else { why_failed(evaluator, &outcome) };
         if let Some(first) = results.last_mut().filter(|_| !number.is_multiple_of(count)) {
-            first.others.push((earned, outcome.success && earned.is_finite()));
+            let name = names.get(number % count).map_or("", String::as_str);
+            first.failure = first.failure.take().or_else(|| Some(format!("population {name}: {}", failure?)));
+            first.others.push((fitness, outcome.success && fitness.is_finite()));
         } else {
             let trial = (number / count % trials.count % kinds) as u32;
-            results.push(TrialResult { trial, outcome, fitness: earned, others: Vec::new() });
+            results.push(TrialResult { trial, outcome, fitness, failure, others: Vec::new() });
         }
     }
     Ok(results)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_shows_a_part_of_a_long_table() {
+        let table = |trials: usize| (0..=trials).map(|line| line.to_string() + "\n").collect::<Vec<_>>().concat();
+        assert_eq!(shortened(table(MAX_SHOWN)), table(MAX_SHOWN));
+        let rest = "... 181 more trials; for all add `| less`\n";
+        assert_eq!(shortened(table(MAX_SHOWN + 1)), table(SHOWN) + rest);
+    }
 }

@@ -13,6 +13,9 @@ use crate::figures::significant::significant;
 
 /// Columns of every test. Several fitness terms and the notes follow.
 const HEAD: [&str; 5] = ["index", "trial", "steps", "success", "fitness"];
+/// Beginnings of the columns of each other population.
+const FITNESS_OF: &str = "fitness of population ";
+const SUCCESS_OF: &str = "success of population ";
 
 /// Columns of a table besides those of every test.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +45,8 @@ pub(crate) struct TrialResult {
     pub(crate) outcome: Outcome,
     /// Fitness of the trial. NaN if it failed.
     pub(crate) fitness: f64,
+    /// Reason why the trial, or that of an opponent, broke down.
+    pub(crate) failure: Option<String>,
     /// Fitness and success of the opponents in the same trial, which is an episode of theirs in their populations.
     pub(crate) others: Vec<(f64, bool)>,
 }
@@ -80,11 +85,9 @@ impl Table {
             .map_or_else(Vec::new, |notes| notes.iter().map(|(name, _)| *name).collect());
         head.extend(names.iter().map(|&name| name.to_owned()));
         // Ones and zeros, so that the mean of a success is its share.
-        let of_others: &[&str] = if has_success { &["fitness", "success"] } else { &["fitness"] };
-        head.extend(
-            others.iter().flat_map(|name| of_others.iter().map(move |what| format!("{what} of population {name}"))),
-        );
-        let lines = trials.iter().enumerate().map(|(index, TrialResult { trial, outcome, fitness, others })| {
+        let of_others: &[&str] = if has_success { &[FITNESS_OF, SUCCESS_OF] } else { &[FITNESS_OF] };
+        head.extend(others.iter().flat_map(|name| of_others.iter().map(move |what| format!("{what}{name}"))));
+        let lines = trials.iter().enumerate().map(|(index, TrialResult { trial, outcome, fitness, others, .. })| {
             let success = outcome.success && fitness.is_finite();
             let mut line = vec![
                 index.to_string(),
@@ -212,7 +215,11 @@ impl Table {
     pub(crate) fn findings(&self, terms: &[String]) -> Findings {
         let rows = self.lines.get(1..).unwrap_or_default();
         let field = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
-        let is_finished = |row: &[String]| field(row, 4).parse::<f64>().is_ok_and(f64::is_finite);
+        let head = self.lines.first().map(Vec::as_slice).unwrap_or_default();
+        let is_fitness = |&column: &usize| column == 4 || head[column].starts_with(FITNESS_OF);
+        let fitness: Vec<usize> = (4..head.len()).filter(is_fitness).collect();
+        let is_finite = |row: &[String], column| field(row, column).parse::<f64>().is_ok_and(f64::is_finite);
+        let is_finished = |row: &[String]| fitness.iter().all(|&column| is_finite(row, column));
         let finished: Vec<&Vec<String>> = rows.iter().filter(|row| is_finished(row)).collect();
         let column = |column: usize| finished.iter().map(|row| field(row, column)).collect::<Vec<_>>();
         // The column is empty without a criterion of success.
@@ -224,12 +231,19 @@ impl Table {
             share.successes += usize::from(field(row, 3) == "true" && is_finished(row));
             share.broken_down += usize::from(!is_finished(row));
         }
-        let head = self.lines.first().map(Vec::as_slice).unwrap_or_default();
         let notes = head.iter().enumerate().skip(HEAD.len()).filter(|(_, name)| !own_columns(terms).contains(name));
         let total = Share {
             successes: by_trial.values().map(|share| share.successes).sum(),
             of: rows.len(),
             broken_down: rows.len() - finished.len(),
+        };
+        // As in the first population, a trial that broke down is no success.
+        let note = |(index, name): (usize, &String)| match Finding::from_fields(column(index)) {
+            Finding::Mean(_) if name.starts_with(SUCCESS_OF) => {
+                let successes = numbers(&column(index)).iter().sum::<f64>() as usize;
+                (name.clone(), Finding::Mean(Share { successes, ..total }.rate()))
+            }
+            finding => (name.clone(), finding),
         };
         let rate = if has_success { total.rate() } else { f64::NAN };
         let proportion = Proportion { successes: total.successes, of: total.of };
@@ -242,7 +256,7 @@ impl Table {
             fitness: mean(&column(4)),
             fitness_interval: mean_interval(&numbers(&column(4))).unwrap_or([f64::NAN; 2]),
             by_trial,
-            notes: notes.map(|(index, name)| (name.clone(), Finding::from_fields(column(index)))).collect(),
+            notes: notes.map(note).collect(),
         }
     }
 }
@@ -268,7 +282,8 @@ mod tests {
             notes: vec![("phase", phase.into()), ("height", height.into())],
             ..Outcome::default()
         };
-        let results = |trial, outcome, fitness| TrialResult { trial, outcome, fitness, others: Vec::new() };
+        let results =
+            |trial, outcome, fitness| TrialResult { trial, outcome, fitness, failure: None, others: Vec::new() };
         let trials = [
             results(0, outcome("reach", 1.0, false), 3.5),
             results(1, outcome("lift", 6.0, true), 3.5),
@@ -289,6 +304,7 @@ mod tests {
             trial: 0,
             outcome: outcome.clone(),
             fitness: 2.0,
+            failure: None,
             others: others.into(),
         };
         let trials = [results(&[(3.0, true), (0.5, false)]), results(&[(1.0, false), (0.5, false)])];
@@ -305,6 +321,14 @@ mod tests {
             notes[1..3].iter().map(|note| note.1.clone()).collect::<Vec<_>>(),
             [Finding::Mean(2.0), Finding::Mean(0.5)]
         );
+        // A trial in which only an opponent broke down is a failure of all: 1 of 2 succeeds in both populations.
+        let mut broken = results(&[(f64::NAN, false), (0.5, true)]);
+        let mut good = results(&[(3.0, true), (0.5, true)]);
+        (good.outcome.success, broken.outcome.success) = (true, true);
+        let findings = Table::new(&columns, &[broken, good]).findings(&["a".into()]);
+        assert_eq!((findings.broken_down, findings.successes, findings.fitness), (1, Some(1), 2.0));
+        let means = [1.0, 3.0, 0.5, 0.5, 0.5].map(Finding::Mean);
+        assert!(findings.notes.iter().map(|note| &note.1).eq(&means), "{findings:?}");
         // Without a criterion nothing succeeds or fails.
         let table = Table::new(&Columns { has_success: false, ..columns }, &trials);
         assert_eq!(table.lines[0][5..].join(","), "at,fitness of population prey,fitness of population 2");
@@ -341,7 +365,8 @@ mod tests {
             notes: vec![("height", height.into())],
             ..Outcome::default()
         };
-        let result = |trial, fitness, outcome| TrialResult { trial, outcome, fitness, others: Vec::new() };
+        let result =
+            |trial, fitness, outcome| TrialResult { trial, outcome, fitness, failure: None, others: Vec::new() };
         let good = result(0, 3.0, outcome(&[1.0, 2.0], true, 4.0));
         // Its other term, its note and its success are those of a trial that was not finished.
         let broken = result(1, f64::NAN, outcome(&[f64::NAN, 50.0], true, 60.0));

@@ -5,15 +5,13 @@ use farsa_view::readable;
 
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluator;
-use crate::experiment::outcome::{Note, Outcome};
+use crate::experiment::outcome::{NO_CRITERION, Note, Outcome};
 #[cfg(feature = "command")]
 use crate::figures::significant::significant;
 use crate::run::plan::MAX_SEED;
 
 /// Text of a mean or share over no trials.
 pub(crate) const NO_VALUE: &str = "no value";
-/// Text of the success of a task that does not define it.
-pub(crate) const NO_CRITERION: &str = "no criterion";
 
 /// Returns the episode of a test trial, numbered through all trials, for the first individual. `kinds` is the
 /// experiment's number of trials.

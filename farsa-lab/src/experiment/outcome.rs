@@ -4,6 +4,9 @@ use std::fmt;
 
 use farsa_evo::ObservationStatistics;
 
+/// Text of the success of a task that does not define it.
+pub(crate) const NO_CRITERION: &str = "no criterion";
+
 /// Outcome of one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outcome {

@@ -17,6 +17,11 @@ pub(crate) fn significant(x: f64) -> String {
     }
 }
 
+/// Formats a share as a percentage, and NaN as a dash.
+pub(crate) fn percent(share: f64) -> String {
+    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
+}
+
 /// Formats a number of things, in the singular for one.
 pub(crate) fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
@@ -46,6 +51,11 @@ mod tests {
         ] {
             assert_eq!(significant(x), text);
         }
+    }
+
+    #[test]
+    fn shares_are_percentages() {
+        assert_eq!([0.5, 1.0 / 3.0, f64::NAN].map(percent), ["50.0 %", "33.3 %", "–"]);
     }
 
     #[test]

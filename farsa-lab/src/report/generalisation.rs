@@ -1,9 +1,9 @@
 //! Number of runs that generalize to held-out cases.
 
 use crate::figures::proportion::{Proportion, fisher};
+use crate::figures::significant::percent;
 use crate::report::outcome::probability;
 use crate::report::page::{Block, Table};
-use crate::report::run::percent;
 
 /// Least share of successful trials of a held-out case for a run to generalize to it.
 const GENERALISES: f64 = 0.75;

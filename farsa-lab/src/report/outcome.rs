@@ -3,10 +3,11 @@
 use crate::figures::bootstrap::{RESAMPLES, median_interval};
 use crate::figures::mann_whitney::{Comparison, compare};
 use crate::figures::proportion::{Proportion, fisher};
+use crate::figures::significant::percent;
 use crate::figures::statistics::Quartiles;
 use crate::report::moment::Moment;
 use crate::report::page::{Block, Table};
-use crate::report::run::{Group, Run, percent, short, whose};
+use crate::report::run::{Group, Run, short, whose};
 
 /// Criterion of a successful run.
 #[derive(Debug, Clone, Copy, PartialEq)]

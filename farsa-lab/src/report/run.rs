@@ -277,11 +277,6 @@ pub(crate) fn short(x: f64) -> String {
     if x != 0.0 && x.abs() < 1e-3 { format!("{x:.3e}") } else { format!("{x:.decimals$}") }
 }
 
-/// Formats a share as a percentage.
-pub(crate) fn percent(share: f64) -> String {
-    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
-}
-
 /// Formats a time.
 pub(crate) fn duration(seconds: f64) -> String {
     let whole = seconds.clamp(0.0, 1e12);
@@ -308,7 +303,6 @@ mod tests {
         for (x, text) in cases {
             assert_eq!(short(x), text);
         }
-        assert_eq!((percent(0.5), percent(f64::NAN)), ("50.0 %".into(), "–".into()));
         assert_eq!((duration(442.9), duration(0.25), duration(-1.0)), ("7m 22s".into(), "250ms".into(), "0s".into()));
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::experiment::protocol::{Case, Protocol};
 use crate::figures::principal_components::PrincipalComponents;
+use crate::figures::significant::percent;
 use crate::figures::trajectories::{Panel, Trajectories};
 use crate::report::page::{Block, Figure};
-use crate::report::run::{Run, percent};
+use crate::report::run::Run;
 use crate::report::tested_protocol::TestedProtocol;
 
 /// Draws the states of a run's champion in the first trials of each case, if recorded states differ.

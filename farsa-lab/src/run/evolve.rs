@@ -20,6 +20,7 @@ use crate::run::records::{Champions, Checkpoint, evolved};
 use crate::run::recover::{RunFiles, recover};
 use crate::run::search_state::{GenerationResult, SearchState};
 use crate::run::summary::{Summary, Winner};
+use crate::shell::{quoted, resume_command};
 use crate::store::append_log::Mark;
 use crate::store::directory::Directory;
 use crate::store::failures::{self, FailedEvaluation};
@@ -174,7 +175,7 @@ impl<'d> Run<'d> {
                 Ok(()) => {}
                 Err(Unfinished::Error(error)) => return Err(error),
                 Err(Unfinished::Stopped) => {
-                    let resume = format!("{} run --resume {}", self.program, self.directory.path().display());
+                    let resume = resume_command(self.program, self.directory.path());
                     ended = Err(Error::Interrupted { resume });
                     break;
                 }
@@ -227,7 +228,7 @@ impl<'d> Run<'d> {
         self.failed.0 += failed.len() as u64;
         if let (None, Some(first)) = (&self.failed.1, failed.into_iter().next()) {
             let FailedEvaluation { generation, individual, why, .. } = &first;
-            let command = first.command(self.program, &self.directory.path().display().to_string());
+            let command = first.command(self.program, &quoted(&self.directory.path().to_string_lossy()));
             progress.note(&format!("generation {generation}: individual {individual} failed: {why}; see `{command}`"));
             self.failed.1 = Some(first);
         }
@@ -270,7 +271,7 @@ impl<'d> Run<'d> {
         let champions: Vec<Winner> =
             self.champions.iter().flat_map(|all| Winner::from_champions(all, &self.names)).collect();
         Ok(Summary {
-            directory: self.directory.path().display().to_string(),
+            directory: self.directory.path().into(),
             experiment,
             condition,
             seed,
@@ -407,7 +408,7 @@ mod tests {
         let replayed = message(replay(&plan, &directory, Selection::default(), None, || Ok(Vec::new())).unwrap_err());
         assert!(replayed.contains("record.bin: ") && replayed.contains(words), "{replayed}");
         // The champion's genes are valid, but its behavior may differ, so there is a warning.
-        let tested = test::test(&plan, &directory, None, 3, 1, 1, LaneRequest::ONE, true).unwrap().text();
+        let tested = test::test(&plan, &directory, None, 3, 1, 1, LaneRequest::ONE, true).unwrap().text(false);
         assert!(tested.contains("warning: ") && tested.contains(words), "{tested}");
         fs::remove_dir_all(root).unwrap();
     }

@@ -13,7 +13,8 @@ use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::{ProgressOptions, Study};
 use crate::run::records::{Champions, Checkpoint};
-use crate::run::summary::{Summary, Winner};
+use crate::run::summary::{Summary, Winner, finished_already};
+use crate::shell::again;
 use crate::store::directory::{Directory, vacant};
 use crate::store::failures;
 use crate::store::lock::Lock;
@@ -111,7 +112,7 @@ impl Queue<'_, '_> {
         let Member { plan, path, name } = (self.member)(number)?;
         let place = OneLine(path.display());
         let skip = |summary: Summary| {
-            self.tell(&format!("{name}: {place}: all {} generations are finished already", summary.generations));
+            self.tell(&format!("{name}: {place}: {}", finished_already(summary.generations)));
             Ok(State::Finished { summary: Box::new(summary), skipped: true })
         };
         if let Some(summary) = finished(&plan, &path)? {
@@ -152,11 +153,9 @@ impl Queue<'_, '_> {
     pub(crate) fn tell_of_others(&self, states: &[State]) {
         match states.iter().filter(|state| state.is_elsewhere()).count() {
             0 => {}
-            1 => self.tell("another process is at 1 run: the same command again says what came of it"),
+            1 => self.tell("another process is at 1 run: repeat the command for the result"),
             runs => {
-                self.tell(&format!(
-                    "other processes are at {runs} runs: the same command again says what came of them"
-                ));
+                self.tell(&format!("other processes are at {runs} runs: repeat the command for the results"));
             }
         }
     }
@@ -185,8 +184,8 @@ fn opened(plan: &Plan<'_>, path: &Path) -> Result<(Directory, bool), Error> {
 /// Returns the summary of a run with all its generations, and `None` for one to begin or continue.
 ///
 /// # Errors
-/// [`Error::File`] by other files, [`Error::Usage`] by another run, [`Error::Usage`] by one with more
-/// generations, and any error that prevents the run from being continued.
+/// [`Error::File`] by other files, [`Error::Usage`] by another run or one with more generations,
+/// and any error that prevents the run from being continued.
 pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
     let directory = match Directory::open(path) {
         Ok(directory) => directory,
@@ -212,7 +211,7 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
     let names = if champions.best.len() > 1 { plan.evaluator()?.info().populations } else { Vec::new() };
     let champions = Winner::from_champions(&champions, &names);
     Ok(Some(Summary {
-        directory: path.display().to_string(),
+        directory: path.into(),
         experiment: identity.experiment,
         condition: identity.condition,
         seed: identity.seed,
@@ -225,33 +224,4 @@ pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, 
         champion: champions.first().cloned(),
         champions: if champions.len() > 1 { champions } else { Vec::new() },
     }))
-}
-
-/// Formats the command line of this process, quoted for a shell.
-fn again(program: &str) -> String {
-    let arguments = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
-    std::iter::once(quoted(program)).chain(arguments).collect::<Vec<_>>().join(" ")
-}
-
-/// Quotes a word for a shell where necessary.
-pub(crate) fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=,:+@%".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.into();
-    }
-    // Only a word with a zero byte cannot be quoted, and no process has such an argument.
-    shlex::try_quote(word).map_or_else(|_| word.into(), std::borrow::Cow::into_owned)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_what_a_shell_would_change_is_quoted() {
-        let words = ["run", "--set", "cart.friction=0.5", "my runs", "it's", "", "a*b"];
-        let line = words.map(quoted).join(" ");
-        assert!(line.starts_with("run --set cart.friction=0.5 "), "{line}");
-        assert_eq!(shlex::split(&line).unwrap(), words);
-    }
 }

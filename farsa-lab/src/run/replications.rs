@@ -117,21 +117,26 @@ impl Replications {
     pub(crate) fn text(&self) -> String {
         let failed = self.runs.iter().any(|run| run.summary.failed > 0);
         let tested = self.runs.iter().any(|run| run.summary.test.is_some());
+        let broken_down = self.runs.iter().any(|run| run.summary.test.is_some_and(|test| test.broken_down > 0));
         let mut head = vec!["directory", "seed", "generations", "champion", "fitness"];
         head.extend(failed.then_some("failed"));
         head.extend(["test success", "test fitness"].iter().filter(|_| tested));
+        head.extend(broken_down.then_some("broken down"));
         let mut rows = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
         rows.extend(self.runs.iter().map(|Replication { summary, .. }| {
             let Summary { directory, seed, generations, champion, .. } = summary;
             let individual = champion.as_ref().map(|champion| champion.individual.to_string()).unwrap_or_default();
             let fitness = summary.fitness().map_or_else(|| "–".into(), significant);
-            let mut row = vec![OneLine(directory).to_string(), seed.to_string(), generations.to_string(), individual];
+            let mut row =
+                vec![OneLine(directory.display()).to_string(), seed.to_string(), generations.to_string(), individual];
             row.push(fitness);
             row.extend(failed.then(|| summary.failed.to_string()));
             row.extend(ChampionTest::cells(summary.test.as_ref()).into_iter().filter(|_| tested));
+            let failures = summary.test.map_or_else(|| "–".into(), |test| test.broken_down.to_string());
+            row.extend(broken_down.then_some(failures));
             row
         }));
-        let mut text = text_table(&rows, 1..8);
+        let mut text = text_table(&rows, 1..9);
         let fitness: Vec<f64> = self.runs.iter().filter_map(|run| run.summary.fitness()).collect();
         if let Some(Quartiles { lower, median, upper }) = Quartiles::from_values(&fitness) {
             // Writing into a string cannot fail.

@@ -1,15 +1,19 @@
 //! Result of a run.
 
-use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+use serde::{Serialize, Serializer};
 
 use crate::escaped::OneLine;
-use crate::figures::significant::significant;
+use crate::experiment::outcome::NO_CRITERION;
+use crate::figures::significant::{counted, percent, significant};
 use crate::run::records::{Best, Champions};
 
 /// Result of a run.
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
-    pub(crate) directory: String,
+    #[serde(serialize_with = "displayed")]
+    pub(crate) directory: PathBuf,
     pub(crate) experiment: String,
     pub(crate) condition: String,
     pub(crate) seed: u64,
@@ -32,6 +36,11 @@ pub(crate) struct Summary {
     pub(crate) champions: Vec<Winner>,
 }
 
+/// Serializes a path that need not be UTF-8.
+fn displayed<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
+}
+
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Winner {
     /// Population, if there are several.
@@ -49,6 +58,9 @@ pub(crate) struct ChampionTest {
     pub(crate) broken_down: usize,
     /// Share of the trials that succeeded, `None` without one.
     pub(crate) success: Option<f64>,
+    /// False for a task that does not define success.
+    #[serde(skip)]
+    pub(crate) has_criterion: bool,
     /// Mean fitness of the trials, `None` if all broke down.
     pub(crate) fitness: Option<f64>,
 }
@@ -56,11 +68,9 @@ pub(crate) struct ChampionTest {
 impl ChampionTest {
     /// Formats the share of successes and the mean fitness of a trial.
     pub(crate) fn cells(test: Option<&Self>) -> [String; 2] {
-        let none = || "–".to_owned();
-        let success = test.and_then(|test| test.success);
-        let fitness = test.and_then(|test| test.fitness);
-        let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-        [success.map_or_else(none, percent), fitness.map_or_else(none, significant)]
+        let Some(&Self { success, has_criterion, fitness, .. }) = test else { return ["–".into(), "–".into()] };
+        let success = if has_criterion { percent(success.unwrap_or(f64::NAN)) } else { NO_CRITERION.into() };
+        [success, fitness.map_or_else(|| "–".into(), significant)]
     }
 }
 
@@ -88,6 +98,14 @@ impl Winner {
     }
 }
 
+/// Formats a number of generations that are all finished.
+pub(crate) fn finished_already(generations: u32) -> String {
+    match generations {
+        1 => "the only generation is finished already".into(),
+        _ => format!("all {generations} generations are finished already"),
+    }
+}
+
 impl Summary {
     /// Formats the summary as one line, and the test of the champion as a second one.
     pub(crate) fn text(&self) -> String {
@@ -97,15 +115,17 @@ impl Summary {
             0 => String::new(),
             failed => format!(", {failed} broke down"),
         };
-        let trials = test.trials;
+        let success = if test.has_criterion { format!("success {success}") } else { format!("{success} of success") };
         format!(
-            "{}\ntest of {trials} trials: success {success}, mean fitness of a trial {fitness}{broken_down}",
-            self.line()
+            "{}\ntest of {}: {success}, mean fitness of a trial {fitness}{broken_down}",
+            self.line(),
+            counted(test.trials, "trial")
         )
     }
 
     fn line(&self) -> String {
-        let (directory, generations) = (OneLine(&self.directory), self.generations);
+        let directory = OneLine(self.directory.display());
+        let generations = counted(self.generations as usize, "generation");
         if let [Winner { generation, .. }, ..] = self.champions.as_slice() {
             let all = self.champions.iter().map(|winner| {
                 let (name, individual) = (winner.population.as_deref().unwrap_or_default(), winner.individual);
@@ -113,12 +133,12 @@ impl Summary {
             });
             let all = all.collect::<Vec<_>>().join("; ");
             let champions = format!("champions of generation {generation}: {all}");
-            return format!("{directory}: {generations} generations; {champions}{}", self.failures());
+            return format!("{directory}: {generations}; {champions}{}", self.failures());
         }
         match &self.champion {
-            None => format!("{directory}: all {generations} generations are finished already"),
+            None => format!("{directory}: {}", finished_already(self.generations)),
             Some(winner @ Winner { generation, individual, .. }) => format!(
-                "{directory}: {generations} generations; champion: individual {individual} of generation {generation}, \
+                "{directory}: {generations}; champion: individual {individual} of generation {generation}, \
                  {}{}",
                 winner.scored(&self.combined),
                 self.failures()

@@ -7,13 +7,14 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::figures::significant::significant;
+use crate::experiment::outcome::NO_CRITERION;
+use crate::figures::significant::{percent, significant};
 use crate::figures::statistics::{Quartiles, median};
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::queue::{Member, Queue, State, finished};
-use crate::run::summary::Summary;
+use crate::run::summary::{ChampionTest, Summary};
 use crate::run::text_table::text_table;
 use crate::sweep::points::Points;
 use crate::sweep::sweep_file::SweepFile;
@@ -185,18 +186,35 @@ impl<'s, 'e> Sweep<'s, 'e> {
     }
 }
 
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
 impl Point {
     fn fitness(&self) -> Vec<f64> {
         self.runs.iter().filter_map(Summary::fitness).collect()
     }
 
-    /// Lists the shares of success in the tests of its champions.
-    fn successes(&self) -> Vec<f64> {
-        self.runs.iter().filter_map(|run| run.test?.success).collect()
+    /// Iterates over the tests of its champions.
+    fn tests(&self) -> impl Iterator<Item = ChampionTest> {
+        self.runs.iter().filter_map(|run| run.test)
+    }
+
+    /// Formats the median share of success in the tests of its champions.
+    fn success(&self) -> String {
+        if self.tests().any(|test| !test.has_criterion) {
+            return NO_CRITERION.into();
+        }
+        let shares: Vec<f64> = self.tests().filter_map(|test| test.success).collect();
+        percent(median(&shares).unwrap_or(f64::NAN))
+    }
+
+    /// Counts the trials that broke down in the tests of its champions.
+    fn broken_down(&self) -> usize {
+        self.tests().map(|test| test.broken_down).sum()
+    }
+
+    /// Counts its finished runs without a fitness, and those whose tested trials all broke down.
+    fn without_value(&self) -> usize {
+        let is_missing =
+            |run: &&Summary| run.fitness().is_none() || run.test.is_some_and(|test| test.fitness.is_none());
+        self.runs.iter().filter(is_missing).count()
     }
 
     /// Counts the failed evaluations of its finished runs.
@@ -215,9 +233,13 @@ impl Found {
     pub(crate) fn text(&self) -> String {
         let some = self.points.iter().any(|point| point.failed() > 0);
         let tested = self.points.iter().flat_map(|point| &point.runs).any(|run| run.test.is_some());
-        let mut head = vec!["point", "finished", "median", "quartiles"];
+        let [broken_down, missing] =
+            [Point::broken_down, Point::without_value].map(|count| self.points.iter().any(|point| count(point) > 0));
+        let mut head = vec!["point", "finished", "median fitness", "quartiles"];
         head.extend(some.then_some("failed"));
-        head.extend(tested.then_some("test success"));
+        head.extend(tested.then_some("median success"));
+        head.extend(broken_down.then_some("broken down"));
+        head.extend(missing.then_some("without value"));
         head.push("directory");
         let mut rows = vec![head.into_iter().map(str::to_owned).collect::<Vec<_>>()];
         rows.extend(self.points.iter().map(|point| {
@@ -230,7 +252,9 @@ impl Found {
             let finished = format!("{} of {}", point.runs.len(), point.replications);
             let mut row = vec![point.number.to_string(), finished, middle, quartiles];
             row.extend(some.then(|| point.failed().to_string()));
-            row.extend(tested.then(|| median(&point.successes()).map_or_else(|| "–".into(), percent)));
+            row.extend(tested.then(|| point.success()));
+            row.extend(broken_down.then(|| point.broken_down().to_string()));
+            row.extend(missing.then(|| point.without_value().to_string()));
             row.push(point.directory.clone());
             row
         }));

@@ -117,7 +117,8 @@ mod tests {
     fn what_is_written_is_read_back() {
         let outcome =
             |success, at: f64| Outcome { success, steps: 6, notes: vec![("at", at.into())], ..Outcome::default() };
-        let result = |trial, fitness, outcome| TrialResult { trial, outcome, fitness, others: Vec::new() };
+        let result =
+            |trial, fitness, outcome| TrialResult { trial, outcome, fitness, failure: None, others: Vec::new() };
         let results = [
             result(0, 1.5, outcome(true, 0.25)),
             result(1, 0.5, outcome(false, 0.5)),

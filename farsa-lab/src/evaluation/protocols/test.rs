@@ -1,6 +1,7 @@
 //! `farsa test --protocol` and `--lesion`: the command.
 
 use std::fmt::Write as _;
+use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
@@ -192,7 +193,7 @@ fn run(
     let (trials, seed) = (trials_of(plan, &protocol, effort)?, effort.seed);
     let progress = Progress::of_trials(trials * asked.len(), effort.quiet);
     let fresh = Trials { count: trials, seed, cases: &asked };
-    let results = run_trials(pool, subject.tested(), fresh, &progress);
+    let results = run_trials(pool, subject.tested(), fresh, &AtomicBool::new(false), &progress);
     drop(progress);
     let results = results?;
     let terms = &pool.info().terms;
@@ -207,7 +208,7 @@ fn run(
         trials,
         cases: CaseSummary::all(&table, terms),
         warning: subject.warning.clone(),
-        failure: failure(&results, terms),
+        failure: failure(&results),
         protocol,
     };
     Ok((run, table))

@@ -215,7 +215,7 @@ fn a_trial_of_a_test_that_breaks_says_why() {
     let directory = create(&plan(&experiment, 2), &root).unwrap();
     run(2, 1, &directory);
     let plan = plan(&experiment, 2);
-    let found = test::test(&plan, &directory, None, 200, 3, 2, LaneRequest::ONE, true).unwrap().text();
+    let found = test::test(&plan, &directory, None, 200, 3, 2, LaneRequest::ONE, true).unwrap().text(false);
     let line = found.lines().last().unwrap();
     assert!(line.starts_with("line ") && line.contains(" of the test failed: "), "{found}");
     fs::remove_dir_all(root).unwrap();

@@ -73,7 +73,7 @@ fn a_steady_state_keeps_the_better_of_two() {
         replay(&plan, &directory, Selection { individual: Some(2), ..Selection::default() }, None, || Ok(Vec::new()))
             .is_err()
     );
-    let table = test::test(&plan, &directory, None, 7, 1, 2, LaneRequest::ONE, true).unwrap().text();
+    let table = test::test(&plan, &directory, None, 7, 1, 2, LaneRequest::ONE, true).unwrap().text(false);
     assert!(table.contains(&format!("individual {survivor} of generation 119")), "{table}");
     // Nothing but the truncation algorithm has a population to set.
     let mut plan = crate::run::tests::plan(&STEADY, GENERATIONS);
@@ -112,7 +112,7 @@ fn a_learner_is_evaluated_and_trained() {
     assert_eq!((generation, words(&best[0])), (11, &genes_of(&history, 11, 0)));
     let (csv, _) = replayed(&plan, &directory, Selection { generation: Some(0), ..Selection::default() });
     assert_eq!(csv.lines().nth(1).unwrap(), "0,0,0.0,0.0");
-    let table = test::test(&plan, &directory, None, 7, 1, 2, LaneRequest::ONE, true).unwrap().text();
+    let table = test::test(&plan, &directory, None, 7, 1, 2, LaneRequest::ONE, true).unwrap().text(false);
     assert!(table.contains("individual 0 of generation 11"), "{table}");
     fs::remove_dir_all(root).unwrap();
 }
@@ -195,7 +195,7 @@ fn populations_meet_each_others_champions() {
 
     // A test runs the champions against each other, and reports every population.
     let tested = test::test(&plan, &directory, None, 4, 1, 2, LaneRequest::ONE, true).unwrap();
-    let text = tested.text();
+    let text = tested.text(false);
     assert!(text.contains(" of generation 8 against each other"), "{text}");
     let csv = fs::read_to_string(directory.test()).unwrap();
     let [a, b, c] = [0, 1, 2].map(|p| f64::from(words(&best[p])[0]));
@@ -209,7 +209,7 @@ fn populations_meet_each_others_champions() {
     let line = format!("1,1,1,{},{seeker:?},{notes},{first:?},1,{second:?},1", seeker >= 0.0);
     assert_eq!(csv.lines().nth(2).unwrap(), line);
     assert_eq!(csv.lines().count(), 5);
-    assert_eq!(text, test::test(&plan, &directory, None, 4, 1, 1, LaneRequest::ONE, true).unwrap().text());
+    assert_eq!(text, test::test(&plan, &directory, None, 4, 1, 1, LaneRequest::ONE, true).unwrap().text(false));
     fs::remove_dir_all(root).unwrap();
 }
 
