@@ -56,9 +56,8 @@ impl Summary {
 /// is the champion. `asked` is the size of a population that the settings were to have, if any.
 ///
 /// # Errors
-/// [`Error::Usage`] with the line for a file that is not a genotype file of this experiment, [`Error::File`] for an existing
-/// directory, and [`Error::Usage`] for populations without genotypes or with fewer than others. Nothing is written on an
-/// error.
+/// [`Error::Usage`] with the line for a file that is not a genotype file of this experiment, and for populations without
+/// genotypes or with fewer than others. [`Error::File`] for an existing directory. Nothing is written on an error.
 pub(crate) fn import(
     mut plan: Plan<'_>,
     paths: &[PathBuf],

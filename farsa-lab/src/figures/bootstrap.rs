@@ -1,4 +1,4 @@
-//! Bootstrap interval of a median.
+//! Intervals of a median and of a mean.
 
 use farsa_num::Stream;
 

@@ -10,7 +10,7 @@ use farsa_evo::Statistics;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use crate::escaped::escaped;
-use crate::figures::significant::significant;
+use crate::figures::significant::{counted, significant};
 
 /// Time between two lines of a log file. The first and the last generation always have a line.
 const INTERVAL: Duration = Duration::from_secs(10);
@@ -77,10 +77,10 @@ impl Work {
     fn text(&self, elapsed: Duration) -> String {
         let (done, generations) = (self.done.load(Ordering::Relaxed), u64::from(self.generations));
         let (text, unit) = if generations == 0 {
-            (format!("{done} of {} trials", self.all), "trials")
+            (format!("{done} of {}", counted(self.all as usize, "trial")), "trials")
         } else {
             let finished = done.saturating_mul(generations) / self.all.max(1);
-            (format!("{finished} of {generations} generations"), "individuals")
+            (format!("{finished} of {}", counted(generations as usize, "generation")), "individuals")
         };
         let new = done - self.first;
         if new == 0 {
@@ -251,6 +251,7 @@ mod tests {
         assert_eq!(run.text(seconds(10)), "4 of 12 generations, 4.0 individuals/s, 40s left");
         assert_eq!(run.text(seconds(4000)), "4 of 12 generations, 0.6 individuals/min, 4h 26m 40s left");
         assert_eq!(work(12, [40, 40, 240], None).text(seconds(9)), "2 of 12 generations");
+        assert_eq!(work(1, [0, 20, 20], None).text(seconds(10)), "1 of 1 generation, 2.0 individuals/s");
         assert_eq!(work(12, [40, 240, 240], None).text(seconds(10)), "12 of 12 generations, 20.0 individuals/s");
         assert_eq!(work(0, [0, 250, 1000], None).text(seconds(5)), "250 of 1000 trials, 50.0 trials/s, 15s left");
         // 200 individuals in 50 s before and 40 in 10 s here are 4/s. There are 160 left here and 240 later.

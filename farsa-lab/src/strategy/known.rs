@@ -79,8 +79,7 @@ pub(crate) fn check_key(
     let list = |names: &[&str]| names.iter().map(|name| Quoted(name).to_string()).collect::<Vec<_>>().join(", ");
     let (listed, more) = others.split_at(others.len().min(MAX_LISTED));
     let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
-    let own = strategy.settings();
-    let keys = list(&own.iter().map(Setting::key).collect::<Vec<_>>());
+    let keys = list(&strategy.settings().iter().map(Setting::key).collect::<Vec<_>>());
     let (listed, name) = (list(listed), Quoted(strategy.name()));
     let why = format!("a setting of {listed}{more}, not of {name}; the settings of {name} are {keys}");
     Err(Error::Setting { place: place.into(), key: key.into(), why })

@@ -41,7 +41,7 @@ impl VariantArgs {
     /// Returns the plan of an experiment under this condition with these settings.
     ///
     /// # Errors
-    /// [`Error::Setting`] and [`Error::Setting`].
+    /// [`Error::Setting`].
     pub(crate) fn plan<'e>(&self, experiment: &'e dyn Experiment) -> Result<Plan<'e>, Error> {
         let mut plan = Plan::new(experiment, self.condition.as_deref(), "")?;
         self.apply(&mut plan)?;
@@ -51,7 +51,7 @@ impl VariantArgs {
     /// Changes the settings of a plan.
     ///
     /// # Errors
-    /// [`Error::Setting`] and [`Error::Setting`].
+    /// [`Error::Setting`].
     pub(crate) fn apply(&self, plan: &mut Plan<'_>) -> Result<(), Error> {
         self.set.iter().try_for_each(|(key, value)| plan.set("--set", key, value.clone()))
     }
