@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use crate::arena::episode::ArenaEpisode;
 use crate::arena::setup::Setup;
+use crate::arena::start_contacts;
 use crate::check::embed::embedded;
 use crate::check::schema::{SCENE_SCHEMA, SCHEMA};
 use crate::check::settings::{Entry, apply, entries};
@@ -177,7 +178,23 @@ impl ComposedExperiment {
                 let (setup, agents) = jointed::setup::Setup::new(document, &self.source)?;
                 let trials = STARTS.filter(|trial| *trial < trials).map(start_of);
                 check_start(&mut JointedEpisode::new(setup, agents), &options, trials, &self.source)?;
+                continue;
             }
+            let most = document.episode.trials;
+            let trials = STARTS.filter(|trial| *trial < most).map(start_of);
+            let (setup, agents) = Setup::new(document, &self.source)?;
+            if !setup.scene.blocks.is_empty() {
+                #[cfg(feature = "rapier")]
+                {
+                    let mut world = self.world_in_rapier(&setup)?;
+                    let mut episode = ArenaEpisode::new(setup, agents);
+                    start_contacts::check_start(&mut episode, &mut world, trials, &self.source)?;
+                }
+                continue;
+            }
+            let mut world = self.world_in_arena(&setup)?;
+            let mut episode = ArenaEpisode::new(setup, agents);
+            start_contacts::check_start(&mut episode, &mut world, trials, &self.source)?;
         }
         Ok(())
     }
@@ -195,17 +212,27 @@ impl ComposedExperiment {
         Ok(ComposedTask(episode))
     }
 
-    /// Builds the evaluator for rapier.
+    /// Builds the world of robots on wheels.
+    fn world_in_arena(&self, setup: &Setup) -> Result<farsa_physics::arena::World, Error> {
+        farsa_physics::arena::World::new(&setup.scene.arena).map_err(|error| self.source.wrong("/world", error))
+    }
+
+    /// Builds the world of robots on wheels in rapier, with blocks.
     #[cfg(feature = "rapier")]
-    fn in_rapier(&self, composed: (Setup, Agents)) -> Result<Box<dyn Evaluator>, Error> {
+    fn world_in_rapier(&self, setup: &Setup) -> Result<farsa_physics::rapier::ArenaWorld, Error> {
         use farsa_physics::rapier::{ArenaOptions, ArenaScene, ArenaWorld, Block};
-        let mut scene = ArenaScene::new(composed.0.scene.arena.clone());
-        for block in &composed.0.scene.blocks {
+        let mut scene = ArenaScene::new(setup.scene.arena.clone());
+        for block in &setup.scene.blocks {
             let crate::arena::scene::Block { centre, heading, size, mass, friction, color } = *block;
             scene.add_block(Block { centre, heading, size, mass, friction, color });
         }
-        let world = ArenaWorld::new(&scene, &ArenaOptions::default());
-        let mut world = world.map_err(|error| self.source.wrong("/world", error))?;
+        ArenaWorld::new(&scene, &ArenaOptions::default()).map_err(|error| self.source.wrong("/world", error))
+    }
+
+    /// Builds the evaluator for rapier.
+    #[cfg(feature = "rapier")]
+    fn in_rapier(&self, composed: (Setup, Agents)) -> Result<Box<dyn Evaluator>, Error> {
+        let mut world = self.world_in_rapier(&composed.0)?;
         let episode = self.episode(composed, &mut world)?;
         Ok(Box::new(InWorld::new(world, episode).with_displacements().with_pushes()))
     }
@@ -244,7 +271,7 @@ impl ComposedExperiment {
             return Err(self.without_rapier());
         }
         let arena = composed.0.scene.arena.clone();
-        let mut world = farsa_physics::arena::World::new(&arena).map_err(|error| self.source.wrong("/world", error))?;
+        let mut world = self.world_in_arena(&composed.0)?;
         let episode = self.episode(composed, &mut world)?;
         Ok(Box::new(InWorld::in_arena(&arena, episode)?))
     }

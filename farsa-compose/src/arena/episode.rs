@@ -10,6 +10,7 @@ use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Schema};
 
 use crate::arena::channel_quantity::{driven, sensed};
+use crate::arena::scene::Scene;
 use crate::arena::sensing::Sensing;
 use crate::arena::setup::Setup;
 use crate::arena::term::{Numbers, Rows, Term};
@@ -59,6 +60,22 @@ impl ArenaEpisode {
             setup,
             agents,
         }
+    }
+
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.setup.scene
+    }
+
+    /// Returns the path of the last placement of these bodies in the document, or of a thing or robot of this name.
+    pub(crate) fn path_of(&self, bodies: impl Iterator<Item = BodyId>, name: &str) -> String {
+        let document = &self.agents.document;
+        let placed = bodies.filter_map(|body| self.setup.starting.rule_of(body));
+        // Robots without a placement have one that the document does not list.
+        if let Some(rule) = placed.filter(|rule| *rule < document.start.len()).max() {
+            return format!("/start/{rule}");
+        }
+        let object = document.objects.iter().position(|object| object.name == name);
+        object.map_or_else(|| "/start".into(), |index| format!("/objects/{index}"))
     }
 
     /// Places everything at its start.

@@ -20,6 +20,8 @@ pub(crate) mod scene;
 pub(crate) mod sensing;
 /// Scene with the sensors, motors and terms of its robots.
 pub(crate) mod setup;
+/// Overlaps at the start of a trial.
+pub(crate) mod start_contacts;
 /// Initial placements.
 pub(crate) mod starting;
 /// Terms of the fitness.

@@ -221,6 +221,23 @@ impl Scene {
         body.ok_or_else(|| source.wrong(path, format!("`{name}` is a wall, which has no middle to be measured")))
     }
 
+    /// Returns the name of a body.
+    pub(crate) fn name_of(&self, body: BodyId) -> Option<&str> {
+        if self.robots.len() == 1 && body == self.parts(0).body {
+            return Some(ROBOT);
+        }
+        self.things.iter().find(|(_, thing)| thing.body() == Some(body)).map(|(name, _)| name.as_str())
+    }
+
+    /// Iterates over the blocks with their length and breadth [m].
+    pub(crate) fn movable(&self) -> impl Iterator<Item = (BodyId, [f64; 2])> + '_ {
+        let first = self.robots.len() + self.arena.cylinders.len() + self.arena.areas.len();
+        self.blocks.iter().enumerate().map(move |(number, block)| {
+            let [length, breadth, _] = block.size;
+            (BodyId((first + number) as u16), [length, breadth])
+        })
+    }
+
     /// Returns the handles of a robot's parts.
     pub(crate) fn parts(&self, robot: usize) -> MobileParts {
         self.arena.parts(robot)

@@ -188,6 +188,11 @@ impl Starting {
         Ok(Self { rules, size: scene.size, outside: outside(scene, &robots), standing, before, chosen })
     }
 
+    /// Returns the number of the placement of a body.
+    pub(crate) fn rule_of(&self, body: BodyId) -> Option<usize> {
+        self.rules.iter().position(|rule| rule.bodies.contains(&body))
+    }
+
     /// Places all bodies, by draws in the order of the rules. Only the first `present` robots take part.
     pub(crate) fn arrange<W: PlanarWorld>(
         &mut self,

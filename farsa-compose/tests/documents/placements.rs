@@ -106,3 +106,46 @@ fn trials_of_the_template_begin_away_from_the_lamp() {
     let near = |trial: &u32| rested(&mut *evaluator, *trial, 0).0.terms[0] > 0.0;
     assert_eq!((0..200).filter(near).count(), 0);
 }
+
+/// A Khepera has a radius of 35 mm, and the wall a thickness of 20 mm.
+#[test]
+fn a_start_of_a_robot_or_a_block_inside_a_thing_is_refused() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("inside.toml");
+    let fixed = |place: &str, at: [f64; 2]| format!("{{ place = \"{place}\", at = \"fixed\", point = {at:?} }}");
+    let alone = |at| format!("robot = {{ kind = \"khepera\" }}\nstart = [{}]\n", fixed("robot", at));
+    let post = "[[objects]]\nkind = \"cylinder\"\nname = \"post\"\nradius = 0.1\nat = [1.0, 1.0]\n";
+    let shelf = "[[objects]]\nkind = \"wall\"\nname = \"shelf\"\nsize = [0.6, 0.02]\nat = [1.0, 0.5]\n";
+    let block = "[[objects]]\nkind = \"block\"\nname = \"crate\"\nsize = [0.4, 0.1, 0.1]\nmass = 0.1\n";
+    let block = format!("{post}{shelf}{block}");
+    let placed = |robot, at, heading| {
+        let block = fixed("crate", at).replace(" }", &format!(", heading = {heading} }}"));
+        format!("robot = {{ kind = \"khepera\" }}\nstart = [{block}, {}]\n", fixed("robot", robot))
+    };
+    let cases = [
+        (alone([1.0, 0.864]), post, None),
+        (alone([1.0, 0.88]), post, Some("`start.1`: `robot` is inside `post` at the start of trial 1")),
+        (alone([0.036, 1.0]), "", None),
+        (alone([0.02, 1.0]), "", Some("`robot` is inside a wall at the start of trial 1")),
+        (alone([1.0, 0.5]), shelf, Some("`robot` is inside a wall")),
+        (placed([0.5, 1.59], [0.4, 1.5], 0), &block, None),
+        (placed([0.5, 1.57], [0.4, 1.5], 0), &block, Some("`start.2`: `robot` is inside `crate`")),
+        (placed([1.5, 1.5], [1.0, 0.57], 0), &block, None),
+        (placed([1.5, 1.5], [1.0, 0.57], 90), &block, Some("`start.1`: `crate` is inside a wall")),
+        (placed([1.5, 1.5], [1.0, 0.55], 0), &block, Some("`start.1`: `crate` is inside a wall")),
+        (placed([1.5, 1.5], [1.0, 1.16], 0), &block, None),
+        (placed([1.5, 1.5], [1.0, 1.22], 45), &block, None),
+        (placed([1.5, 1.5], [1.0, 1.2], 45), &block, Some("`start.1`: `crate` is inside `post`")),
+    ];
+    for (start, objects, expected) in cases {
+        let engine = if objects.contains("block") { ", engine = \"rapier\"" } else { "" };
+        let parts = PARTS.replacen(" }", &format!("{engine} }}"), 1);
+        let text = format!("{parts}reward = [{{ kind = \"time\" }}]\n{start}{objects}");
+        std::fs::write(&path, &text).expect("a file");
+        let read = ComposedExperiment::from_file(&path, farsa_lab::strategy::strategies());
+        let error = read.err().map(|error| error.to_string());
+        match expected {
+            None => assert_eq!(error, None, "{text}"),
+            Some(expected) => assert!(error.as_deref().is_some_and(|e| e.contains(expected)), "{error:?}\n{text}"),
+        }
+    }
+}
