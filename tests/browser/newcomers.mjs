@@ -48,6 +48,19 @@ async function linked(browser, { check, write, opened, settled, silent }) {
   await silent(browser, "direct inputs");
 }
 
+// A network with more links than a call has room for arguments.
+async function dense(browser, { check, write, opened, silent }) {
+  const trial = arenaTrial(0);
+  const node = (layer) => (_, i) => ({ channel: layer * 8, layer: layer, name: `${layer}-${i}` });
+  const [from, to] = [0, 1].map((layer) => Array.from({ length: 400 }, node(layer)));
+  trial.network = { nodes: [...from, ...to], links: [{ from: [0, 400], to: [400, 800], first: 0 }], values: [] };
+  trial.weights = Array.from({ length: 160_000 }, (_, i) => (i % 7) - 3);
+  await opened(browser, write("dense.html", compose(pageOf([trial], "top"))));
+  const links = await browser.run(() => farsa.trials[0].network.links.length);
+  check("a network of 160 000 links is shown", links === 160_000, links);
+  await silent(browser, "dense network");
+}
+
 async function moments(browser, { check, write, opened, silent }) {
   const trials = [armTrial(0), armTrial(1)];
   trials.forEach((trial, i) => (trial.name = `generation 9, individual 3, trial ${i + 4}`));
@@ -65,6 +78,8 @@ async function moments(browser, { check, write, opened, silent }) {
   await browser.until(() => !document.querySelector("#message").hidden);
   const message = await browser.run(() => document.querySelector("#message").textContent);
   check("a trial that the page does not hold is named", /trial 7/.test(message), message);
+  await browser.run(() => (location.hash = "#trial=5&t=1"));
+  await browser.until(() => farsa.time.toFixed(2) === "1.00" && document.querySelector("#message").hidden);
   await silent(browser, "moments");
 }
 
@@ -95,6 +110,7 @@ async function colored(browser, { check, write, opened, silent }) {
 
 export async function newcomers(browser, tools) {
   await linked(browser, tools);
+  await dense(browser, tools);
   await moments(browser, tools);
   await followed(browser, tools);
   await colored(browser, tools);
@@ -115,6 +131,10 @@ export async function phoned(driver, { check, write, opened, silent, dataOf, wit
     await opened(browser, `${write("fresh.html", html)}#trial=fresh-3&t=1`);
     const at = await browser.run(() => [farsa.trials[0].name.startsWith("fresh trial 3"), farsa.time.toFixed(2)].join());
     check("a live page opens at the moment in its address", at === "true,1.00", at);
+    await opened(browser, `${write("changed.html", html)}#trial=0&t=1&change=noise%3A0.1`);
+    await browser.until(() => farsa.trials.length === 2 && farsa.time.toFixed(2) === "1.00");
+    const chips = await browser.run(() => [...document.querySelectorAll("#live .chips button")].map((chip) => chip.textContent).join());
+    check("and with the change in it", chips === "noise:0.1 ×", chips);
     await silent(browser, "live page on a phone");
   } finally {
     await browser.close();

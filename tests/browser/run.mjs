@@ -631,8 +631,18 @@ async function filmed(browser) {
   await settled(browser);
   check("a double click brings a thing into the middle", before > 40 && away(await at()) < 40, `${before} ${away(await at())}`);
   await browser.run(() => farsa.seek(farsa.ticks - 20));
+  // Brightness of the middle of each film's first frame.
+  await browser.run(() => {
+    const { drawImage } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.drawImage = function (image, ...place) {
+      drawImage.call(this, image, ...place);
+      if (image.className === "scene") window.lit ??= this.getImageData(this.canvas.width >> 1, this.canvas.height >> 1, 1, 1).data.slice(0, 3).reduce((a, b) => a + b);
+    };
+  });
   await browser.run(() => document.querySelector("#record").click());
   check("a film is a file", (await browser.until(() => farsa.filmed)) > 1000);
+  const lit = await browser.run(() => window.lit);
+  check("its first frame shows the scene", lit > 30, lit);
   await silent(browser, "filmed");
 }
 
@@ -991,6 +1001,8 @@ async function evolves(browser) {
   await browser.until(new Function(`return document.querySelector("#live select").selectedOptions[0]?.textContent.startsWith("generation ${log.length - 1}, evolved here") && document.querySelector("#live p.soft").textContent === ""`));
   const champion = await browser.run(() => [farsa.trials.length, document.querySelectorAll("#live select")[0].options.length]);
   check("its champions are there to be looked at", champion[0] === 1 && champion[1] > 1, champion.join());
+  await browser.run(() => farsa.pause());
+  await browser.until(() => location.hash.startsWith("#agent="));
   if (shots) writeFileSync(join(shots, "evolution.png"), await browser.screenshot());
   const robots = await browser.run(() => {
     const list = document.querySelector('#live select[aria-label="Robot that is recorded"]');

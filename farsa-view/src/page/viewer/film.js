@@ -6,7 +6,7 @@ function filmOf(views, done) {
 	const parts = [];
 	let recorder;
 
-	// Copies the drawn views side by side.
+	// Copies the views side by side, which must have been drawn in this frame. The first frame begins the film.
 	function take() {
 		const shown = views().map((view) => view.canvas);
 		const [width, height] = [shown.reduce((sum, one) => sum + one.width, 0), max(...shown.map((one) => one.height))];
@@ -17,17 +17,17 @@ function filmOf(views, done) {
 			c.drawImage(one, left, 0);
 			left += one.width;
 		}
+		if (!recorder) start();
 	}
 
 	function start() {
-		take();
 		recorder = new MediaRecorder(canvas.captureStream(30), {videoBitsPerSecond: 8e6});
 		recorder.ondataavailable = (event) => parts.push(event.data);
 		recorder.onstop = () => done(new Blob(parts, {type: recorder.mimeType}));
 		recorder.start();
 	}
 
-	return {start, take, stop: () => recorder.stop()};
+	return {take, stop: () => recorder?.stop()};
 }
 
 // Saves a file.

@@ -37,7 +37,7 @@ function inWorker() {
 			const {ticks, bodies, channels, blocks, position_origin: origin, position_unit: unit} = film;
 			const {buffer} = bytesOf(film.data);
 			const [values, times] = [new Uint16Array(buffer, 0, buffer.byteLength >> 1), new Float32Array(buffer, blocks.times, ticks)];
-			const at = channels.findIndex((channel) => channel.words);
+			const at = channels.findIndex((channel) => channel.words && channel.group === "phase");
 			const {words = [], minimum} = channels[at] ?? {};
 			const counts = words.map(() => 0);
 			for (let t = 0; words[0] && t < ticks; t++) counts[minimum + values[blocks.channels/2 + at*ticks + t]]++;
@@ -111,9 +111,13 @@ async function liveOf(page) {
 	const {live: {module: packed, script, about: {individuals}}} = page;
 	// The best trial of the run is shown first.
 	const told = individuals.at(-1).trials;
-	const best = told.reduce((best, trial, i) => (trial.fitness > told[best].fitness ? i : best), 0);
-	const {trial} = momentOf();
-	const state = {individual: individuals.length - 1, trial: trialNamed(trial, page.live.about) ?? {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
+	// A trial that broke down has no fitness.
+	const earned = ({fitness}) => fitness ?? -Infinity;
+	const best = told.reduce((best, trial, i) => (earned(trial) > earned(told[best]) ? i : best), 0);
+	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
+	const {agent, trial} = heldBy(momentOf(), page.live.about) ?? {};
+	// Changes in the address follow when the whole trial is shown.
+	Object.assign(state, {individual: agent ?? state.individual, trial: trial ?? state.trial});
 	const request = {do: "film", ...asked(state), lesion: ""};
 	const module = firstWorker("compile", {packed}).catch((error) => {
 		// A function that returns a vector.
@@ -134,6 +138,15 @@ async function liveOf(page) {
 function trialNamed(name, {trials}) {
 	const [, fresh, number] = /^(fresh-)?(\d{1,9})$/.exec(name) ?? [];
 	return fresh ? {fresh: {number: +number, seed: 1}} : number < trials ? {number: +number} : null;
+}
+
+// The agent, trial and changes of an address, or null if the page does not hold them.
+function heldBy({trial: name, agent, change = ""}, about) {
+	const trial = trialNamed(name, about);
+	const place = agent === undefined ? about.individuals.length - 1 : /^\d{1,9}$/.test(agent) ? +agent : NaN;
+	if (!trial || !about.individuals[place]) return null;
+	const changes = new Map(change.split(",").filter(Boolean).map((part) => [part.split("=")[0], part.split("=")[1] ?? ""]));
+	return {agent: place, trial, changes};
 }
 
 const asked = ({individual, trial, watched}) => ({individual, trial, watched});
@@ -268,23 +281,34 @@ function tellControls(own, state, about) {
 	own.undo.disabled = !changesOf(state);
 }
 
-// Names the trials of the page in its address.
+// Names the agent, the trial and the changes in the address, but no moved or pushed bodies.
 function addressed(player, state, about, change) {
-	const named = () => (state.trial.fresh ? `fresh-${state.trial.fresh.number}` : `${state.trial.number}`);
-	Object.defineProperty(player, "number", {get: named});
-	player.choose = async (name) => {
-		const trial = trialNamed(name, about);
-		if (trial && name !== named()) await change({trial});
-		return !!trial;
+	const evolved = about.individuals.length - 1;
+	const address = () => {
+		const trial = state.trial.fresh ? `fresh-${state.trial.fresh.number}` : `${state.trial.number}`;
+		return {...state.individual === evolved ? {} : {agent: state.individual}, trial, ...state.changes.size ? {change: listOf(state)} : {}};
+	};
+	Object.defineProperty(player, "address", {get: address});
+	player.choose = async ({trial, agent = `${evolved}`, change: list}) => {
+		const found = heldBy({trial, agent, change: list}, about);
+		const asked = found && {individual: found.agent, trial: found.trial, changes: found.changes};
+		const before = JSON.stringify(address());
+		if (found && JSON.stringify({...agent === `${evolved}` ? {} : {agent: +agent}, trial, ...list ? {change: list} : {}}) !== before) await change(asked);
+		return !!found;
 	};
 }
 
 // Summarizes fresh trials, with the changes if there are any.
-async function behaviorOf(count, state, own, change) {
+async function behaviorOf(count, state, about, own, change) {
 	own.behavior.disabled = true;
 	const request = {individual: state.individual, watched: state.watched, ...changesOf(state) ?? {lesion: ""}};
-	const open = (number) => change({trial: {fresh: {number, seed: 1}}});
-	const found = await summarized(count, request, own.summary, open).catch((error) => own.summary.replaceChildren(error.message));
+	// A mark opens a trial of this summary, also after other changes.
+	const {individual, watched, changes, moves, pushes} = state;
+	const kept = {individual, watched, changes: new Map(changes), moves, pushes};
+	const open = (number) => change({...kept, changes: new Map(kept.changes), trial: {fresh: {number, seed: 1}}});
+	const {generation, name = ""} = about.individuals[individual];
+	const whose = about.individuals[1] ? `Generation ${generation}${name}. ` : "";
+	const found = await summarized(count, request, whose, own.summary, open).catch((error) => own.summary.replaceChildren(error.message));
 	own.behavior.disabled = false;
 	return found;
 }
@@ -293,7 +317,8 @@ async function behaviorOf(count, state, own, change) {
 function attach(page, state, whole, player, open) {
 	const {about} = page.live;
 	const counted = new Map();
-	let [answer, turn, chosen] = [null, 0, ""];
+	const subjectOf = () => JSON.stringify([state.individual, changesOf(state)]);
+	let [answer, turn, chosen, tested] = [null, 0, "", subjectOf()];
 	const set = (name, to) => {
 		const before = {...state};
 		state.changes = new Map(before.changes).set(name, to);
@@ -304,7 +329,7 @@ function attach(page, state, whole, player, open) {
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
 	const own = controlsOf(page, {set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
-	const summarize = (count) => behaviorOf(count, state, own, change);
+	const summarize = (count) => behaviorOf(count, state, about, own, change);
 
 	function choose(name) {
 		chosen = name;
@@ -321,6 +346,9 @@ function attach(page, state, whole, player, open) {
 	async function show(before = {...state}) {
 		const [mine, changes, {pushes}] = [++turn, changesOf(state), state];
 		marks();
+		// A count of successes belongs to one agent and its changes.
+		if (subjectOf() !== tested) own.earned.textContent = "";
+		tested = subjectOf();
 		say("runs ...");
 		try {
 			const intact = await answerOf({do: "film", ...asked(state), lesion: ""});

@@ -75,7 +75,7 @@ function curveOf({from: a, to: b}) {
 
 // Draws links with an opacity that depends on the relative weight.
 function paintLinks(c, links, some, alpha) {
-	const strongest = max(...links.map(({weight, direct}) => (direct ? 0 : abs(weight)))) || 1;
+	const strongest = links.reduce((most, {weight, direct}) => (direct ? most : max(most, abs(weight))), 0) || 1;
 	for (const {weight, direct, curve: [x, y, ...rest]} of some) {
 		const part = direct ? 0.7 : abs(weight)/strongest;
 		Object.assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + (direct ? 1 : 2.4*part), strokeStyle: colorOf(direct ? "--soft" : weight < 0 ? "--a" : "--b")});

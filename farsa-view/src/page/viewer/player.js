@@ -38,15 +38,16 @@ class Player {
 		if (!clock || !this.views[0]) return;
 		if (farsa.playing) {
 			// A page that was hidden continues at its tick.
-			this.tick = clock.tickAt(this.now + min(100, max(0, time - this.before))/1000*this.speed);
+			const longest = this.film ? 2000 : 100;
+			this.tick = clock.tickAt(this.now + min(longest, max(0, time - this.before))/1000*this.speed);
 			this.before = time;
-			if (this.tick >= clock.ticks - 1) this.pause();
 			this.ask();
 		}
 		const {camera} = this;
 		camera.carry(this.followedPlace());
 		shown.forEach((trial, i) => this.views[i].draw(trial, this.tickOf(trial), this.visible));
 		this.film?.take();
+		if (farsa.playing && this.tick >= clock.ticks - 1) this.pause();
 		const tick = floor(this.tick);
 		$("slider").value = tick;
 		const text = clockOf(clock, tick);
@@ -79,7 +80,6 @@ class Player {
 			farsa.filmed = blob.size;
 			save(`${shown[0].name.replace(/[^\w.-]+/g, "-").slice(0, 60)}.webm`, blob);
 		});
-		this.film.start();
 		this.play();
 	}
 
@@ -98,8 +98,13 @@ class Player {
 		return numbersOf(this.trials)[this.trials.indexOf(this.shown[0])];
 	}
 
-	// Shows a trial by its name in the address. Returns false if there is none.
-	choose(number) {
+	// What the address says of the trial that is shown.
+	get address() {
+		return {trial: this.number};
+	}
+
+	// Shows a trial by the address. Returns false if there is none.
+	choose({trial: number}) {
 		const trial = this.trials[numbersOf(this.trials).indexOf(number)];
 		if (trial && trial !== this.shown[0]) this.show(trial);
 		return !!trial;
@@ -115,16 +120,16 @@ class Player {
 		clearTimeout(this.noting);
 		// A page within another one may have no address.
 		try {
-			history.replaceState(null, "", `#trial=${this.number}&t=${+this.now.toFixed(4)}`);
+			history.replaceState(null, "", `#${new URLSearchParams({...this.address, t: +this.now.toFixed(4)})}`);
 		} catch {}
 	}
 
-	// Copies the address of the moment. Without permission it is in the address bar alone.
+	// Copies the address of the moment. Without permission it remains in the address bar.
 	async link() {
 		this.pause();
 		this.write();
-		await navigator.clipboard?.writeText(location.href).catch(() => {});
-		$("link").textContent = "Copied";
+		const copied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+		$("link").textContent = copied ? "Copied" : "In the address";
 		setTimeout(() => ($("link").textContent = "Link"), 1500);
 	}
 

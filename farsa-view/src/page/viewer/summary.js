@@ -59,11 +59,11 @@ function startMap(trials, {body, axes, places}, open) {
 	});
 	const svg = drawn("svg", {viewBox: `0 0 ${wide.toFixed(0)} ${tall.toFixed(0)}`, role: "img", "aria-label": "Success by start"}, ...marks);
 	const along = axes.map((axis, k) => `${"xyz"[axis]} ${ends[k].map((end) => +end.toFixed(3)).join(" to ")} m`);
-	return [make("p", "soft", `Start of ${trials[0].bodies[body]}: ${along.join(", ")}. Circles succeed, crosses do not. A click opens the trial.`), svg];
+	return [make("p", "soft", `Start of ${trials[0].bodies[body]}: ${along.join(", ")}. ${trials[0].success === null ? "" : "Circles succeed, crosses do not. "}A click opens the trial.`), svg];
 }
 
 // Runs fresh trials, with the changes if there are any, and shows their summary in `place`.
-async function summarized(count, request, place, open) {
+async function summarized(count, request, whose, place, open) {
 	const trials = [];
 	for (let number = 0; number < count; number++) {
 		const found = await answerOf({do: "film", ...request, trial: {fresh: {number, seed: 1}}}, "brief");
@@ -78,7 +78,7 @@ async function summarized(count, request, place, open) {
 	const text = failed === count ? `all ${count} fresh trials broke down` : `${share}, mean fitness ${shortest(mean)}${failed ? `, ${failed} broke down` : ""}`;
 	const [phases, starts] = [phasesOf(trials), startsOf(trials)];
 	place.replaceChildren(
-		make("p", "", `${request.lesion || request.moves || request.pushes ? "With the change" : "Intact"}: ${text}.`),
+		make("p", "", `${whose}${request.lesion || request.moves || request.pushes ? "With the change" : "Intact"}: ${text}.`),
 		...phases[0] ? [phaseTable(phases, count)] : [],
 		...starts ? startMap(trials, starts, open) : [make("p", "soft", "All trials start alike.")],
 	);
