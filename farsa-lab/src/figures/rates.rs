@@ -31,10 +31,11 @@ pub(crate) struct RateCurve<'a> {
 }
 
 impl RateCurve<'_> {
-    /// Computes the value at which the share first falls to half of its first value, by linear interpolation.
+    /// Computes the value at which the share first falls to half of its first value, by interpolation over missing shares.
     pub(crate) fn half(&self, values: &[f64]) -> Option<f64> {
-        let half = 0.5 * self.shares.first()?.0;
-        let points: Vec<[f64; 2]> = values.iter().zip(&self.shares).map(|(x, (share, _))| [*x, *share]).collect();
+        let points = values.iter().zip(&self.shares).map(|(x, (share, _))| [*x, *share]);
+        let points: Vec<[f64; 2]> = points.filter(|[_, share]| share.is_finite()).collect();
+        let half = 0.5 * points.first()?[1];
         let falls = points.windows(2).find(|pair| pair[0][1] > half && pair[1][1] <= half)?;
         let [[x, above], [next, below]] = [falls[0], falls[1]];
         Some(x + (next - x) * (above - half) / (above - below))
@@ -117,6 +118,7 @@ mod tests {
     fn a_share_falls_to_half_between_two_values() {
         let values = [0.0, 1.0, 2.0, 3.0];
         assert_eq!(curve("", &[0.8, 0.8, 0.2, 0.0]).half(&values), Some(1.0 + 0.4 / 0.6000000000000001));
+        assert_eq!(curve("", &[0.8, f64::NAN, 0.2]).half(&values), Some(2.0 * 0.4 / 0.6000000000000001));
         assert_eq!(curve("", &[0.8, 0.7, 0.6, 0.5]).half(&values), None);
         assert_eq!(curve("", &[0.0, 0.0, 0.0, 0.0]).half(&values), None);
     }
