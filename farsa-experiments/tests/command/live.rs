@@ -166,7 +166,7 @@ fn runs_without_a_page_are_refused_and_write_nothing() {
         (farsa(), "live catcher --html new.html --module module", "the module is not compressed by gzip"),
         (farsa(), "live catcher --html new.html --module nowhere", "nowhere"),
         (farsa(), "live catcher --html new.html --generations 3", "generation 3 of 1 finished ones"),
-        (farsa(), "live catcher --html notes.html", "there is one already"),
+        (farsa(), "live catcher --html notes.html --generations 3", "there is one already"),
         (farsa(), "live nowhere --html new.html", "there is no such directory"),
         (farsa(), "live catcher", "--html"),
     ] {

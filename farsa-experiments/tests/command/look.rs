@@ -55,9 +55,13 @@ fn a_page_holds_the_lives_that_were_asked_for() {
     // A page takes the place of a page, and of nothing else.
     ok(own(), &here, "replay r1 --trial best --html one.html");
     assert_eq!(data(&fs::read_to_string(here.join("one.html")).expect("the page")), best);
-    fs::write(here.join("notes.html"), "mine").expect("a file");
+    ok(own(), &here, "report r1 --html one.html");
+    let notes = fs::read_to_string(here.join("best.html")).expect("the page").replace("<h1", "<p>mine</p><h1");
+    fs::write(here.join("notes.html"), &notes).expect("a file");
     for (arguments, complaint) in [
-        ("replay r1 --html notes.html", "there is one already"),
+        // Refused before anything runs.
+        ("replay r1 --trial 3 --html notes.html", "there is one already, without an intact mark"),
+        ("replay r1 --trial 3 --html none/new.html", "there is no folder none"),
         ("replay r1 --html new.html --compare r3", "there is no such directory"),
         ("replay r1 --trial 3 --html new.html", "trial 3 of 3"),
         ("replay r1 --trial 3 --out new.csv", "trial 3 of 3"),
@@ -67,7 +71,7 @@ fn a_page_holds_the_lives_that_were_asked_for() {
         let said = say(own(), &here, arguments);
         assert!(said.code != Some(0) && said.err.contains(complaint), "{arguments}: {said:?}");
     }
-    assert_eq!(fs::read(here.join("notes.html")).expect("the file"), b"mine");
+    assert_eq!(fs::read_to_string(here.join("notes.html")).expect("the file"), notes);
     assert!(["new.html", "new.csv", "new.svg"].into_iter().all(|name| !here.join(name).exists()));
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
-use crate::store::replace::write_page;
+use crate::store::own_output::{refuse_other, write_outputs};
 
 /// Result of a replay, with a summary of each run.
 #[derive(Debug, Serialize)]
@@ -44,7 +44,7 @@ pub(crate) fn run_in_words(plan: &Plan<'_>) -> String {
 /// Writes a page for a browser from what `add` adds of a run, and of a second run to compare. `what` ends its title.
 ///
 /// # Errors
-/// As for `add` and [`write_page`].
+/// As for `add` and [`write_outputs`].
 pub(crate) fn page<S: InWords>(
     (plan, directory): (&Plan<'_>, &Directory),
     compare: Option<(&Plan<'_>, &Directory)>,
@@ -52,6 +52,7 @@ pub(crate) fn page<S: InWords>(
     path: &Path,
     add: impl Fn(&mut Page, &Plan<'_>, &Directory) -> Result<S, Error>,
 ) -> Result<Replayed<S>, Error> {
+    refuse_other(path)?;
     let both = compare.map_or_else(|| plan.name(), |(other, _)| format!("{} and {}", plan.name(), other.name()));
     let mut page = Page::new(&format!("{both}{what}"));
     let replay = add(&mut page, plan, directory)?;
@@ -60,6 +61,6 @@ pub(crate) fn page<S: InWords>(
     if compared.is_some() {
         page.open_beside(second);
     }
-    write_page(path, &page.html())?;
+    write_outputs(&[(path.into(), page.html())])?;
     Ok(Replayed::new(replay, compared))
 }

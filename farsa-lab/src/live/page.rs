@@ -21,7 +21,7 @@ use crate::run::record_file::RunRecord;
 use crate::run::records::Checkpoint;
 use crate::store::bounded;
 use crate::store::directory::Directory;
-use crate::store::replace::write_page;
+use crate::store::own_output::{refuse_other, write_outputs};
 
 /// Steps of a trial at which a page compares its episode with the run's.
 const DIGESTS_PER_TRIAL: usize = 100;
@@ -100,7 +100,7 @@ pub(crate) struct PageText {
 /// Writes an interactive page of the best individual of each generation given, by default of the champion.
 ///
 /// # Errors
-/// Errors of [`html`], and [`Error::Io`].
+/// Errors of [`html`] and [`write_outputs`].
 pub(crate) fn page(
     laboratory: &Laboratory<'_>,
     (plan, directory): (&Plan<'_>, &Directory),
@@ -108,11 +108,12 @@ pub(crate) fn page(
     module: &[u8],
     path: &Path,
 ) -> Result<LiveSummary, Error> {
+    refuse_other(path)?;
     let PageText { html, generations } = html(laboratory, (plan, directory), generations, module, Use::File)?;
-    write_page(path, &html)?;
+    let bytes = write_outputs(&[(path.into(), html)])?;
     let (directory, file) = (directory.path().display().to_string(), path.display().to_string());
-    let summary = format!("{file}: {} bytes, {} individuals of {directory}", html.len(), generations.len());
-    Ok(LiveSummary { directory, file, generations, bytes: html.len(), summary })
+    let summary = format!("{file}: {bytes} bytes, {} individuals of {directory}", generations.len());
+    Ok(LiveSummary { directory, file, generations, bytes, summary })
 }
 
 /// Returns the interactive page of the best individual of each generation given, by default of the champion.

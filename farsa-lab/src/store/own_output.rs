@@ -1,4 +1,4 @@
-//! Pictures and reports that replace their earlier versions.
+//! Pictures, pages and reports that replace their earlier versions.
 //!
 //! Such a file has a mark with the checksum of its other bytes. A file without a mark, or one that was changed, stays.
 
@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use farsa_num::crc32;
 
 use crate::error::Error;
-use crate::store::replace::{create_results, replace};
+use crate::store::replace::{create_results, refuse_lost, replace};
 use crate::store::temporary_file;
 
-/// First bytes of a PNG file, and the length of its last chunk, which must remain the last.
+/// First bytes of a PNG file.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// Length of the last chunk of PNG, which must remain the last.
 const PNG_END: usize = 12;
 /// Bytes of the largest file that is read.
 const MAX_BYTES: u64 = 1_000_000_000;
@@ -43,42 +44,52 @@ fn is_marked(bytes: &[u8]) -> bool {
     let (start, end) = bytes.split_at(place(bytes));
     let is_png = bytes.starts_with(PNG);
     let Some(length) = start.len().checked_sub(mark(is_png, 0).len()) else { return false };
-    let (start, found) = start.split_at(length);
-    found == mark(is_png, crc32(&[start, end].concat()))
+    let (start, stored) = start.split_at(length);
+    stored == mark(is_png, crc32(&[start, end].concat()))
 }
 
-/// Checks if a file is an unchanged picture or report.
+/// Checks if a file is an unchanged output.
 fn is_own(path: &Path) -> bool {
     let is_small = fs::symlink_metadata(path).is_ok_and(|file| file.is_file() && file.len() <= MAX_BYTES);
     is_small && fs::read(path).is_ok_and(|bytes| is_marked(&bytes))
 }
 
-/// Refuses the name of an existing file, except of an unchanged picture or report, before the new one takes time to compute.
+/// Refuses a name without its folder and that of an existing file, except of an unchanged output, before the new one takes time
+/// to compute.
 ///
 /// # Errors
 /// [`Error::Usage`].
 pub(crate) fn refuse_other(path: &Path) -> Result<(), Error> {
-    let exists = fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir());
-    if exists && !is_own(path) {
-        let why = "there is one already, which FARSA did not write or which was changed since";
-        return Err(Error::Usage(format!("{}: {why}", path.display())));
-    }
-    Ok(())
+    replaces(path).map(drop)
 }
 
-/// Writes pictures and reports to new files, or over their earlier versions.
+/// Checks if an output replaces its earlier version, or refuses its name.
+fn replaces(path: &Path) -> Result<bool, Error> {
+    refuse_lost(path)?;
+    let is_own = is_own(path);
+    if !is_own && fs::metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_dir()) {
+        let why = "there is one already, without an intact mark of FARSA";
+        return Err(Error::Usage(format!("{}: {why}", path.display())));
+    }
+    Ok(is_own)
+}
+
+/// Writes pictures, pages and reports to new files, or over their earlier versions. Returns the number of bytes.
 ///
 /// # Errors
 /// The errors of [`refuse_other`] and [`create_results`]. No file is changed if one is refused.
-pub(crate) fn write_outputs(outputs: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<(), Error> {
-    outputs.iter().try_for_each(|(path, _)| refuse_other(path))?;
-    let outputs = outputs.iter().map(|(path, bytes)| (path.clone(), marked(bytes.as_ref())));
-    let (old, new): (Vec<_>, Vec<_>) = outputs.partition(|(path, _)| is_own(path));
+pub(crate) fn write_outputs(outputs: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<usize, Error> {
+    let (mut old, mut new) = (Vec::new(), Vec::new());
+    for (path, bytes) in outputs {
+        let files = if replaces(path)? { &mut old } else { &mut new };
+        files.push((path.clone(), marked(bytes.as_ref())));
+    }
     create_results(&new)?;
-    old.iter().try_for_each(|(path, bytes)| {
+    for (path, bytes) in &old {
         temporary_file::sweep_of(path);
-        replace(path, bytes)
-    })
+        replace(path, bytes)?;
+    }
+    Ok(old.iter().chain(&new).map(|(_, bytes)| bytes.len()).sum())
 }
 
 #[cfg(test)]
@@ -129,11 +140,13 @@ mod tests {
         fs::write(path("b.svg"), text("b.svg").replace("first", "First")).unwrap();
         for (names, refused) in [(["a.md", "mine.svg"], "mine.svg"), (["a.md", "b.svg"], "b.svg")] {
             let error = write("third", &names).unwrap_err().to_string();
-            assert!(error.contains(&format!("{refused}: there is one already, which FARSA did not write")), "{error}");
+            assert!(error.contains(&format!("{refused}: there is one already, without an intact mark")), "{error}");
         }
         assert_eq!(text("mine.svg"), "mine");
         assert!(text("a.md").starts_with("second") && text("b.svg").starts_with("First"));
         assert!(refuse_other(folder.path()).is_err() && refuse_other(&path("new.md")).is_ok());
+        let lost = refuse_other(&path("none/new.md")).unwrap_err().to_string();
+        assert!(lost.contains("there is no folder "), "{lost}");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
     }
 }

@@ -1,10 +1,8 @@
 //! Atomic replacement of files.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-
-use farsa_view::Page;
 
 use crate::error::Error;
 use crate::store::temporary_file;
@@ -53,7 +51,10 @@ pub(crate) fn refuse_existing(path: &Path) -> Result<(), Error> {
 }
 
 /// Refuses the name of a result in a folder that does not exist.
-fn refuse_lost(path: &Path) -> Result<(), Error> {
+///
+/// # Errors
+/// [`Error::Usage`].
+pub(crate) fn refuse_lost(path: &Path) -> Result<(), Error> {
     let folder = temporary_file::parent(path);
     if folder.is_dir() {
         return Ok(());
@@ -112,50 +113,9 @@ pub(crate) fn create_results(results: &[(PathBuf, impl AsRef<[u8]>)]) -> Result<
     written
 }
 
-/// Writes a page to a new file, or over an older page of FARSA.
-///
-/// # Errors
-/// As [`create_results`].
-pub(crate) fn write_page(path: &Path, html: &str) -> Result<(), Error> {
-    if !is_page(path) {
-        return create_results(&[(path.to_owned(), html)]);
-    }
-    temporary_file::sweep_of(path);
-    replace(path, html.as_bytes())
-}
-
-/// Checks whether a file is a page of FARSA.
-fn is_page(path: &Path) -> bool {
-    if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) {
-        return false;
-    }
-    let mut start = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(2000).read_to_end(&mut start));
-    read.is_ok() && String::from_utf8_lossy(&start).contains(Page::MARK)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn pages_take_the_place_of_pages_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        let page = |title: &str| Page::new(title).html();
-        write_page(&path("page.html"), &page("first")).unwrap();
-        write_page(&path("page.html"), &page("second")).unwrap();
-        assert_eq!(fs::read_to_string(path("page.html")).unwrap(), page("second"));
-        // The file of a process that was killed while writing.
-        fs::write(path(".page.html.0123456789ab.new"), "<p>").unwrap();
-        write_page(&path("page.html"), &page("third")).unwrap();
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        fs::write(path("notes.html"), "<p>mine</p>").unwrap();
-        let error = write_page(&path("notes.html"), &page("third")).unwrap_err();
-        assert!(error.to_string().ends_with("there is one already"), "{error}");
-        assert!(write_page(folder.path(), &page("third")).is_err());
-        assert_eq!(fs::read_to_string(path("notes.html")).unwrap(), "<p>mine</p>");
-    }
 
     #[test]
     fn what_cannot_be_written_leaves_the_old_content() {

@@ -288,7 +288,7 @@ pub(crate) struct ReplayArgs {
     /// A new file for the steps as CSV [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
-    /// A page for a browser (an existing page is replaced)
+    /// A page for a browser (replaces only its earlier version)
     #[arg(long, value_name = "FILE", conflicts_with = "out", value_hint = ValueHint::FilePath)]
     pub(crate) html: Option<PathBuf>,
     /// Another run, whose trial the page shows for comparison
@@ -338,7 +338,7 @@ pub(crate) struct LiveArgs {
     /// The run's directory
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
-    /// The file of the page (an existing page is replaced)
+    /// The file of the page (replaces only its earlier version)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) html: PathBuf,
     /// Generations whose best individuals are included, such as 0,10,100 [default: the last]
