@@ -190,6 +190,16 @@ impl Setting {
         }
     }
 
+    /// Checks if this is the only allowed number.
+    pub(crate) fn is_fixed_to(&self, value: &Value) -> bool {
+        let is_single = match &self.allowed {
+            Allowed::Whole(range) => range.start() >= range.end(),
+            Allowed::Number(range) | Allowed::Numbers(range) => range.start() >= range.end(),
+            Allowed::Flag | Allowed::Word(_) | Allowed::Text => false,
+        };
+        is_single && self.default == *value
+    }
+
     fn length(&self) -> usize {
         match &self.default {
             Value::Numbers(list) => list.len(),

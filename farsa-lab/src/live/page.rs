@@ -7,6 +7,7 @@ use farsa_view::{LivePage, View};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::experiment::settings::Value;
 use crate::live::champion::champion;
 use crate::live::page_run::{PageIndividual, PageRun};
 use crate::live::request::EpisodeRequest;
@@ -22,6 +23,7 @@ use crate::run::records::Checkpoint;
 use crate::store::bounded;
 use crate::store::directory::Directory;
 use crate::store::own_output::{refuse_other, write_outputs};
+use crate::strategy::settings::GENERATIONS;
 
 /// Steps of a trial at which a page compares its episode with the run's.
 const DIGESTS_PER_TRIAL: usize = 100;
@@ -169,7 +171,7 @@ fn run_so_far(plan: &Plan<'_>, directory: &Directory) -> Result<(Vec<Row>, Resul
         return Ok((Vec::new(), Err("these genotypes were not made by evolution".into())));
     }
     // One generation without variation, such as that of a vehicle wired by hand.
-    if plan.settings.find("live", "evolution.generations").is_ok_and(|setting| setting.allowed() == "1 to 1") {
+    if plan.settings.find("live", GENERATIONS).is_ok_and(|setting| setting.is_fixed_to(&Value::Whole(1))) {
         return Ok((Vec::new(), Err("nothing evolves in this experiment".into())));
     }
     let checkpoint = Checkpoint::read(plan, directory)?;
