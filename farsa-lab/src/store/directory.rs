@@ -6,9 +6,13 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::escaped::Quoted;
+use crate::store::bounded::read_regular_text;
 use crate::store::lock::Lock;
 use crate::store::replace::sync_directory;
 use crate::store::temporary_file;
+
+/// Bytes of the largest configuration that is searched for the name of its experiment.
+const MAX_CONFIG_BYTES: u64 = 4_000_000;
 
 /// A run's directory.
 #[derive(Debug, Clone)]
@@ -95,7 +99,8 @@ impl Directory {
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
         let directory = Self::at(path.into());
         if !path.is_dir() {
-            let near = run_named(path).map(|run| format!("; a run of this name is {}", Quoted(&run)));
+            let near =
+                run_named(path, Path::new("runs")).map(|run| format!("; a run of this name is {}", Quoted(&run)));
             return Err(Error::no_run(path, &format!("there is no such directory{}", near.unwrap_or_default())));
         }
         if !directory.config().is_file() {
@@ -169,17 +174,22 @@ impl Directory {
     }
 }
 
-/// Finds the first run in `runs` with the name of a path, or of its experiment.
-fn run_named(path: &Path) -> Option<String> {
+/// Finds the first run in `runs` with the name of a path, or of the experiment of that name.
+fn run_named(path: &Path, runs: &Path) -> Option<String> {
     let name = path.file_stem()?.to_str().filter(|_| path.components().count() == 1)?;
-    let runs = Path::new("runs");
+    let experiment = format!("experiment = {name:?}");
     let mut names: Vec<String> =
         fs::read_dir(runs).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
     names.sort();
     let is_run = |run: &String| {
-        let rest = run.strip_prefix(name);
-        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
-            && runs.join(run).join("config.toml").is_file()
+        let Some(rest) = run.strip_prefix(name) else { return false };
+        let config = read_regular_text(&runs.join(run).join("config.toml"), MAX_CONFIG_BYTES);
+        config.is_ok_and(|config| {
+            // Below a comment, the experiment comes first in every configuration.
+            let is_of_experiment = || config.lines().take(2).any(|line| line == experiment);
+            rest.is_empty()
+                || rest.strip_prefix('-').is_some_and(|end| end.parse::<u64>().is_ok() || is_of_experiment())
+        })
     };
     Some(runs.join(names.into_iter().find(is_run)?).display().to_string())
 }
@@ -207,6 +217,30 @@ pub(crate) fn vacant(path: &Path) -> Result<(), Error> {
 mod tests {
     use super::*;
     use crate::store::replace::replace;
+
+    #[test]
+    fn a_run_of_another_experiment_is_not_suggested() {
+        let folder = tempfile::tempdir().unwrap();
+        let add = |run: &str, experiment: &str| {
+            fs::create_dir(folder.path().join(run)).unwrap();
+            let config = format!("# A comment.\nexperiment = \"{experiment}\"\ncondition = \"far\"\nseed = 1\n");
+            fs::write(folder.path().join(run).join("config.toml"), config).unwrap();
+        };
+        let suggested = |path: &str| {
+            let run = run_named(Path::new(path), folder.path())?;
+            Some(Path::new(&run).strip_prefix(folder.path()).unwrap().to_str().unwrap().to_owned())
+        };
+        fs::create_dir(folder.path().join("follow-1")).unwrap();
+        add("follow-me-1", "follow-me");
+        assert_eq!((suggested("follow"), suggested("follow-me-1")), (None, Some("follow-me-1".into())));
+        add("follow-me-far-1", "follow-me");
+        add("follow-near-2", "follow");
+        assert_eq!(
+            (suggested("follow"), suggested("follow-me.toml")),
+            (Some("follow-near-2".into()), Some("follow-me-1".into()))
+        );
+        assert_eq!((suggested("follow-near"), suggested("foll")), (Some("follow-near-2".into()), None));
+    }
 
     #[test]
     fn a_directory_is_made_whole_or_not_at_all() {
