@@ -190,8 +190,8 @@ impl<'a> BlockLayout<'a> {
         groups.zip(self.range(kind))
     }
 
-    /// The groups with their neurons, and the index of the first bias, gain and leak among those of their kind.
-    pub(crate) fn places(&self) -> impl Iterator<Item = (&'a Group, Span, [usize; 3])> + use<'a> {
+    /// Lists the groups with their neurons, and the index of the first bias, gain and leak among those of their kind.
+    pub fn places(&self) -> impl Iterator<Item = (&'a Group, Span, [usize; 3])> + use<'a> {
         let (mut first, mut places) = (0_usize, [0_usize; 3]);
         self.groups.iter().map(move |group| {
             let at = (group, Span::new(first, group.neurons), places);

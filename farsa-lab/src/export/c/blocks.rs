@@ -1,7 +1,7 @@
 //! A network of blocks in C.
 
 use farsa_nn::Leak;
-use farsa_nn::block::{Block, BlockLayoutBuf, Group, Span};
+use farsa_nn::block::{Block, BlockLayoutBuf, Span};
 
 use crate::error::Error;
 use crate::export::c::calls::{add, floats, leak_update, real_response};
@@ -52,19 +52,6 @@ pub(super) fn block_code(layout: &BlockLayoutBuf, leak: Leak, tables: String) ->
     Ok(Code { number: "float", tables, fields, functions: String::new(), init, step, units: String::new() })
 }
 
-/// The groups with their neurons, and the index of the first bias, gain and leak.
-fn places(layout: &BlockLayoutBuf) -> impl Iterator<Item = (&Group, Span, [usize; 3])> {
-    let (mut first, mut places) = (0, [0; 3]);
-    layout.groups.iter().map(move |group| {
-        let place = (group, Span::new(first, group.neurons), places);
-        first += group.neurons;
-        for (place, has) in places.iter_mut().zip([group.bias, group.gain, group.leak]) {
-            *place += if has { group.neurons } else { 0 };
-        }
-        place
-    })
-}
-
 /// Net inputs begin with the biases, gains with their parameters.
 fn begin(layout: &BlockLayoutBuf) -> String {
     let neurons = layout.layout().neurons();
@@ -75,7 +62,9 @@ fn begin(layout: &BlockLayoutBuf) -> String {
     }}
 "
     )];
-    for (group, Span { first, count }, [bias, gain, _]) in places(layout).filter(|(_, span, _)| span.count > 0) {
+    for (group, Span { first, count }, [bias, gain, _]) in
+        layout.layout().places().filter(|(_, span, _)| span.count > 0)
+    {
         if group.bias {
             text.push(format!("    copy(state->net + {first}, BIASES + {bias}, {count});\n"));
         }
@@ -111,7 +100,7 @@ fn connect(index: usize, from: Span, to: Span, delay: usize, weights: usize) -> 
 /// New activations of a span, which may cover parts of several groups.
 fn update(layout: &BlockLayoutBuf, leak: Leak, span: Span) -> String {
     let mut text = Vec::new();
-    for (group, neurons, [_, _, leaks]) in places(layout) {
+    for (group, neurons, [_, _, leaks]) in layout.layout().places() {
         let (first, end) = (span.first.max(neurons.first), span.end().min(neurons.end()));
         let inputs = layout.inputs.clamp(first, end.max(first));
         let net = real_response(group.activation, group.slope, "state->net[i]");
