@@ -1,6 +1,7 @@
 //! Networks of every kind in C: the compiler of this machine and `tests/firmware/c/run` compare their bits with Rust.
 #![cfg(all(unix, feature = "command"))]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -83,7 +84,8 @@ fn networks() -> Vec<(&'static str, bool, NetworkExport)> {
         ("leaky", true, leaky(3, 2, 1, Leak::Filter)),
         ("leaky_two_tap", false, leaky(5, 9, 4, Leak::TwoTap)),
         ("leaky_evonet", false, leaky(29, 12, 23, Leak::Evonet)),
-        ("perceptron", false, perceptron(3, 2, 1.0)),
+        // A name whose macros begin with TEST.
+        ("test", false, perceptron(3, 2, 1.0)),
         // Arguments up to hundreds: the ends of the exponential and subnormal outputs.
         ("perceptron_steep", true, perceptron(3, 2, 12.0)),
         // The name in the guide.
@@ -233,11 +235,44 @@ fn every_kind_has_the_bits_of_rust() {
 }
 
 #[test]
+fn names_are_plain_and_bounded_in_comments() {
+    let mut controller = export(leaky(2, 1, 1, Leak::Filter));
+    controller.sensors[0].name = "a\u{202e}b\\\n*/".into();
+    controller.sensors[1] = SensorExport {
+        name: "n".repeat(1000),
+        reads: SensorReading::JointPosition { joint: "j".repeat(1000), from: 0.0, to: 1.0 },
+    };
+    controller.motors[0].drives = MotorDrive::Muscle { actuator: "m".repeat(1000), muscle: 0 };
+    let CFiles { header, .. } = controller.c("plain", "A\u{2066} test").expect("files");
+    let line = |text: &str| header.lines().any(|line| line == text);
+    assert!(line("/* A  test.") && line(" *   0 a b  * /"), "{header}");
+    let [name, joint, muscle] = ["n", "j", "m"].map(|letter| letter.repeat(200) + "...");
+    assert!(line(&format!(" *   1 {name}: position of joint {joint} [rad], 0 at 0, 1 at 1")), "{header}");
+    assert!(line(&format!(" *   0 motor 0 : muscle of {muscle} that pulls towards the lower limit")), "{header}");
+}
+
+/// A linear neuron whose weight on itself is 1e20: its activation is x in step 1, about 1e20 in 2, and infinite in 3.
+#[test]
+fn outputs_without_a_literal_are_refused() {
+    let neuron = Span::new(1, 1);
+    let groups = vec![Group::new(1, Activation::Linear), Group::new(1, Activation::Linear)];
+    let connections = [Block::connect(Span::new(0, 1), neuron), Block::connect(neuron, neuron)];
+    let blocks = [vec![Block::Update(Span::new(0, 1))], connections.to_vec(), vec![Block::Update(neuron)]].concat();
+    let layout = BlockLayoutBuf { inputs: 1, outputs: 1, groups, blocks };
+    let network =
+        |weight| NetworkExport::Blocks { layout: layout.clone(), leak: Leak::Filter, parameters: vec![1.0, weight] };
+    assert!(export(network(1.0)).c("bounded", "").is_ok());
+    let error = export(network(1e20)).c("unbounded", "").expect_err("no files");
+    assert!(matches!(error, farsa_lab::Error::Usage(_)), "{error:?}");
+    assert!(error.to_string().contains("output 0 of the network is inf in step 3 "), "{error}");
+}
+
+#[test]
 fn the_self_test_counts_rows_that_differ() {
     let folder = folder("controllers-in-c-changed");
     let network = leaky(3, 2, 1, Leak::Filter);
     let files = export(network).c("changed", "A test").expect("files");
-    let start = files.source.find("TEST_OUTPUTS").expect("rows");
+    let start = files.source.find("ROWS_OUT").expect("rows");
     let (before, rows) = files.source.split_at(start);
     // One output of the 16 rows.
     let source = format!("{before}{}", rows.replacen("    0.", "    1.", 1));
@@ -259,15 +294,20 @@ fn the_self_test_counts_rows_that_differ() {
 fn json_lists_every_parameter_with_its_row_and_column() {
     for (name, _, network) in networks() {
         let json = serde_json::to_value(&network).expect("JSON");
-        let mut next = 0;
+        let mut offsets = BTreeMap::new();
         for entry in json["parameters"].as_array().expect("a list") {
             let shape: Vec<usize> = serde_json::from_value(entry["shape"].clone()).expect("a shape");
-            assert_eq!(entry["first"], next, "{name}: {entry}");
+            let (first, count) = (entry["first"].as_u64().expect("a number") as usize, shape.iter().product::<usize>());
+            // Weights of blocks are parts of one table.
+            let key = entry["name"].as_str().expect("a name");
+            let offset = offsets.entry(key.to_owned()).or_insert(0);
+            let table: Vec<f32> = serde_json::from_value(json[key].clone()).expect("a table");
+            assert_eq!(network.parameters()[first..first + count], table[*offset..*offset + count], "{name}: {entry}");
+            *offset += count;
             let meaning = entry["meaning"].as_str().expect("a text");
             assert_eq!(shape.len() == 2, meaning.contains("row j, column i"), "{name}: {entry}");
-            next += shape.iter().product::<usize>();
         }
-        assert_eq!(next, network.parameters().len(), "{name}");
+        assert_eq!(offsets.values().sum::<usize>(), network.parameters().len(), "{name}");
     }
     // Two connections of a network of blocks, by their neurons.
     let json = serde_json::to_value(blocks(Leak::Filter)).expect("JSON");

@@ -29,7 +29,7 @@ pub(super) fn block_code(layout: &BlockLayoutBuf, leak: Leak, tables: String) ->
                     fields.push(("uint32_t", format!("oldest_{index}"), 1));
                     fields.push(floats(&format!("delayed_{index}"), length));
                     init.push(format!(
-                        "    state->oldest_{index} = 0;\n    for (int i = 0; i < {length}; i++) state->delayed_{index}[i] = 0.0f;\n"
+                        "    state->oldest_{index}[0] = 0;\n    for (int i = 0; i < {length}; i++) state->delayed_{index}[i] = 0.0f;\n"
                     ));
                 }
                 step.push(connect(index, from, to, delay, weights));
@@ -52,7 +52,7 @@ pub(super) fn block_code(layout: &BlockLayoutBuf, leak: Leak, tables: String) ->
     Ok(Code { number: "float", tables, fields, functions: String::new(), init, step, units: String::new() })
 }
 
-/// Net inputs begin with the biases, gains with their parameters.
+/// Writes the first values of a step: biases as net inputs, parameters as gains.
 fn begin(layout: &BlockLayoutBuf) -> String {
     let neurons = layout.layout().neurons();
     let mut text = vec![format!(
@@ -85,11 +85,11 @@ fn connect(index: usize, from: Span, to: Span, delay: usize, weights: usize) -> 
         0 => format!("    for (int j = 0; j < {count}; j++) state->sent[j] = {value};\n"),
         _ => format!(
             "    for (int j = 0; j < {count}; j++) {{
-        float *place = state->delayed_{index} + state->oldest_{index} * {count} + j;
+        float *place = state->delayed_{index} + state->oldest_{index}[0] * {count} + j;
         state->sent[j] = *place;
         *place = {value};
     }}
-    state->oldest_{index} = (state->oldest_{index} + 1) % {delay};
+    state->oldest_{index}[0] = (state->oldest_{index}[0] + 1) % {delay};
 "
         ),
     };
@@ -97,7 +97,7 @@ fn connect(index: usize, from: Span, to: Span, delay: usize, weights: usize) -> 
     begin + &add(&sums, to.count, "state->sent", count, &format!("WEIGHTS + {weights}"))
 }
 
-/// New activations of a span, which may cover parts of several groups.
+/// Writes the new activations of a span, which may cover parts of several groups.
 fn update(layout: &BlockLayoutBuf, leak: Leak, span: Span) -> String {
     let mut text = Vec::new();
     for (group, neurons, [_, _, leaks]) in layout.layout().places() {

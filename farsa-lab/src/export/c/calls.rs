@@ -4,12 +4,12 @@ use farsa_nn::{Activation, Leak};
 
 use crate::export::c::code::real;
 
-/// An array of floats in the state.
+/// Returns an array of floats in the state.
 pub(super) fn floats(name: &str, count: usize) -> (&'static str, String, usize) {
     ("float", String::from(name), count)
 }
 
-/// The call that adds sources to sums, or nothing without sources or targets.
+/// Writes the call that adds sources to sums, or nothing without sources or targets.
 pub(super) fn add(sums: &str, targets: usize, x: &str, sources: usize, weights: &str) -> String {
     match sources.min(targets) {
         0 => String::new(),
@@ -17,7 +17,7 @@ pub(super) fn add(sums: &str, targets: usize, x: &str, sources: usize, weights: 
     }
 }
 
-/// The call of an activation function.
+/// Writes the call of an activation function.
 pub(super) fn response(activation: Activation, argument: &str) -> String {
     let function = match activation {
         Activation::Logistic => "logistic",
@@ -29,12 +29,12 @@ pub(super) fn response(activation: Activation, argument: &str) -> String {
     format!("{function}({argument})")
 }
 
-/// The response to a net input that is multiplied by a slope.
+/// Writes the response to a net input that is multiplied by a slope.
 pub(super) fn real_response(activation: Activation, slope: f32, net: &str) -> String {
     response(activation, &format!("{} * {net}", real(slope)))
 }
 
-/// The update of the activation `h` by the response `y` and the leak `d`. `index` is that of the neuron.
+/// Writes the update of the activation `h` by the response `y` and the leak `d`. `index` is that of the neuron.
 pub(super) fn leak_update(leak: Leak, h: &str, index: &str) -> String {
     match leak {
         Leak::Filter => format!("        {h} = d * y + (1.0f - d) * {h};\n"),

@@ -1,6 +1,7 @@
 //! Descriptions of inputs and outputs for comments.
 
-use crate::experiment::controller_export::{MotorDrive, MotorExport, SensorExport, SensorReading};
+use crate::escaped::{acts, shortened};
+use crate::experiment::controller_export::{MotorDrive, MotorExport, SensorExport, SensorReading, ServoExport};
 
 /// Returns the lines that describe the inputs.
 pub(super) fn inputs_text(sensors: &[SensorExport]) -> String {
@@ -14,33 +15,34 @@ pub(super) fn outputs_text(motors: &[MotorExport]) -> String {
 
 fn lines<'a>(channels: impl Iterator<Item = (&'a str, String)>) -> String {
     let line = |(index, (name, meaning)): (usize, (&str, String))| {
-        format!(" *   {index} {}\n", {
-            if meaning.is_empty() { comment(name) } else { comment(&format!("{name}: {meaning}")) }
-        })
+        let name = shortened(name);
+        let text = if meaning.is_empty() { name.into() } else { format!("{name}: {meaning}") };
+        format!(" *   {index} {}\n", comment(&text))
     };
     channels.enumerate().map(line).collect()
 }
 
-/// Returns a text that cannot end a comment.
+/// Returns a text on one line that cannot end a comment.
 pub(super) fn comment(text: &str) -> String {
-    let text: String =
-        text.chars().map(|letter| if letter.is_control() || letter == '\\' { ' ' } else { letter }).collect();
+    let plain = |letter| if acts(letter) || matches!(letter, '\n' | '\t' | '\\') { ' ' } else { letter };
+    let text: String = text.chars().map(plain).collect();
     text.replace("*/", "* /").replace("/*", "/ *")
 }
 
 fn reading(reading: &SensorReading) -> String {
     match reading {
         SensorReading::JointPosition { joint, from, to } => {
-            format!("position of joint {joint} [rad], 0 at {from}, 1 at {to}")
+            format!("position of joint {} [rad], 0 at {from}, 1 at {to}", shortened(joint))
         }
         SensorReading::Touch { pairs, saturation } => {
-            let pairs: Vec<String> = pairs.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+            let pairs: Vec<String> =
+                pairs.iter().map(|[a, b]| format!("{} and {}", shortened(a), shortened(b))).collect();
             format!("number of touching pairs / {saturation}, at most 1: {}", pairs.join(", "))
         }
         SensorReading::Way { target, from, axes, component, scale } => {
             let axis = ["x", "y", "z"].get(*component).unwrap_or(&"?");
             let axes = format!("{axes:?}").to_lowercase();
-            let (to, start) = (&target.body, &from.body);
+            let (to, start) = (shortened(&target.body), shortened(&from.body));
             format!(
                 "{axis} of the way from {start} {:?} to {to} {:?} [m] in axes of the {axes}, times {scale}",
                 from.at, target.at
@@ -48,9 +50,9 @@ fn reading(reading: &SensorReading) -> String {
         }
         SensorReading::Quantity { quantity, unit, zero, one, linear } => {
             let between = if *linear { "" } else { ", a curve between" };
-            format!("{quantity} [{unit}], 0 at {zero}, 1 at {one}{between}")
+            format!("{} [{}], 0 at {zero}, 1 at {one}{between}", shortened(quantity), shortened(unit))
         }
-        SensorReading::Label { phase, amplitude } => format!("{amplitude} in the phase {phase}, else 0"),
+        SensorReading::Label { phase, amplitude } => format!("{amplitude} in the phase {}, else 0", shortened(phase)),
         SensorReading::Channel { .. } => String::new(),
     }
 }
@@ -59,13 +61,14 @@ fn drive(drive: &MotorDrive) -> String {
     match drive {
         MotorDrive::Muscle { actuator, muscle } => {
             let muscle = if *muscle == 0 { "towards the lower limit" } else { "towards the upper limit" };
-            format!("muscle of {actuator} that pulls {muscle}")
+            format!("muscle of {} that pulls {muscle}", shortened(actuator))
         }
-        MotorDrive::Quantity { quantity, unit, zero, one } => format!("{quantity} [{unit}], {zero} at 0, {one} at 1"),
+        MotorDrive::Quantity { quantity, unit, zero, one } => {
+            format!("{} [{}], {zero} at 0, {one} at 1", shortened(quantity), shortened(unit))
+        }
         MotorDrive::Servos { servos } => {
-            let servo = |servo: &crate::experiment::controller_export::ServoExport| {
-                format!("{} {} at 0, {} at 1", servo.actuator, servo.from, servo.to)
-            };
+            let servo =
+                |servo: &ServoExport| format!("{} {} at 0, {} at 1", shortened(&servo.actuator), servo.from, servo.to);
             format!("position of servos [rad]: {}", servos.iter().map(servo).collect::<Vec<_>>().join("; "))
         }
         MotorDrive::Channel { .. } => String::new(),

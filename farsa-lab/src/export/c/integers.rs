@@ -68,7 +68,7 @@ impl Quantized {
             init: format!("    for (int i = 0; i < {hidden}; i++) {previous}state->hidden[i] = 0;\n"),
             step: self.step(),
             units: format!(
-                "An input v is the integer 2^{INPUT_BITS} v,\n * clamped to 16 bits, and an output is an integer in units of 2^-15."
+                "An input v is the integer 2^{INPUT_BITS} v,\n * rounded to the nearest (half to even) and clamped to 16 bits, and an output is an integer in units of 2^-15."
             ),
         }
     }

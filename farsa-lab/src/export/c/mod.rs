@@ -21,7 +21,8 @@ impl ControllerExport {
     /// `name` begins every public name in C, and `about` the comment of the header.
     ///
     /// # Errors
-    /// Returns [`Error::Usage`] for an invalid name, and [`Error::Other`] if the parameters do not fit the network.
+    /// Returns [`Error::Usage`] for an invalid name and for outputs that exceed single precision in the self-test, and
+    /// [`Error::Other`] if the parameters do not fit the network.
     pub fn c(&self, name: &str, about: &str) -> Result<CFiles, Error> {
         self.check(name)?;
         let code = reals::code(&self.network)?;
@@ -65,7 +66,7 @@ impl ControllerExport {
 }
 
 /// Returns the nearest name that is valid in C.
-pub(crate) fn identifier(name: &str) -> String {
+fn identifier(name: &str) -> String {
     let letters = name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' });
     let name: String = letters.collect();
     if name.starts_with(|first: char| first.is_ascii_alphabetic()) { name } else { format!("controller_{name}") }

@@ -20,7 +20,7 @@ pub(super) fn code(network: &NetworkExport) -> Result<Code, Error> {
     }
 }
 
-/// The parameters as constants in their order.
+/// Writes the parameters as constants in their order.
 fn tables(network: &NetworkExport) -> String {
     let tables = network.tables().into_iter();
     let text = tables.map(|(name, _, values)| {
@@ -117,7 +117,7 @@ static float output(int i, float y)
     Ok(Code { number: "float", tables: tables.concat(), fields, functions, init, step, units: String::new() })
 }
 
-/// The coefficients of the time constants, which are computed in double precision.
+/// Computes the coefficients of the time constants in double precision.
 fn rates(layout: &CtrnnLayout, time_step: f32, parameters: &[f32]) -> Result<Vec<f32>, Error> {
     let network = Ctrnn::new(*layout, time_step, parameters, vec![0.0; layout.state_len()]);
     let (_, state) = network.map_err(|error| Error::Other(error.to_string()))?.into_parts();
@@ -125,7 +125,7 @@ fn rates(layout: &CtrnnLayout, time_step: f32, parameters: &[f32]) -> Result<Vec
     Ok(state.get(2 * neurons..3 * neurons).unwrap_or_default().to_vec())
 }
 
-/// Net inputs of the present outputs, indented by `indent`.
+/// Writes the net inputs of the present outputs, indented by `indent`.
 fn net(layout: &CtrnnLayout, indent: &str) -> String {
     let (inputs, neurons) = (layout.inputs(), layout.neurons());
     let mut text = vec![format!("    for (int i = 0; i < {neurons}; i++) state->net[i] = 0.0f;\n")];
@@ -144,7 +144,7 @@ fn net(layout: &CtrnnLayout, indent: &str) -> String {
     text.concat().lines().map(indented).collect()
 }
 
-/// Stores weighted inputs, and the outputs of the network at the end.
+/// Writes the beginning of a step, which stores weighted inputs, and its end with the outputs.
 fn ends(layout: &CtrnnLayout) -> [String; 2] {
     let (inputs, first, outputs) = (layout.inputs(), layout.output_neurons().start, layout.outputs());
     let begin = match layout.direct_inputs() {

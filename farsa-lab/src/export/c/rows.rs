@@ -18,6 +18,9 @@ pub(super) fn inputs(count: usize) -> Vec<f32> {
 }
 
 /// Steps a network in single precision over the rows.
+///
+/// # Errors
+/// [`Error::Usage`] for outputs without a literal in C.
 pub(super) fn reals(network: &NetworkExport) -> Result<Rows, Error> {
     let [inputs_len, outputs_len] = network.shape();
     let mut controller = controller(network).map_err(|error| Error::Other(error.to_string()))?;
@@ -26,6 +29,12 @@ pub(super) fn reals(network: &NetworkExport) -> Result<Rows, Error> {
     for row in 0..ROWS {
         let mut y = vec![0.0; outputs_len];
         controller.step(&x[row * inputs_len..(row + 1) * inputs_len], &mut y);
+        if let Some((output, value)) = y.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+            return Err(Error::Usage(format!(
+                "output {output} of the network is {value} in step {} of inputs from 0 to 1, which has no form in C",
+                row + 1
+            )));
+        }
         outputs.extend(y);
     }
     Ok(Rows { inputs: literals(x, real), outputs: literals(outputs, real) })

@@ -86,14 +86,11 @@ int {name}_selftest(void);
         )
     }
 
-    /// Declarations of the fields of the state.
+    /// Declares the fields of the state.
     fn fields(&self) -> impl Iterator<Item = String> {
         let none = self.code.fields.is_empty().then(|| String::from("uint8_t none"));
-        let field = |(kind, name, count): &(&str, String, usize)| match count {
-            1 if name.starts_with("oldest") => format!("{kind} {name}"),
-            // An empty array is invalid in C99.
-            count => format!("{kind} {name}[{}]", count.max(&1)),
-        };
+        // An empty array is invalid in C99.
+        let field = |(kind, name, count): &(&str, String, usize)| format!("{kind} {name}[{}]", count.max(&1));
         self.code.fields.iter().map(field).chain(none)
     }
 
@@ -115,8 +112,8 @@ void {name}_step({name}_state *state, const {number} *inputs, {number} *outputs)
 {unused}{no_inputs}{step}}}
 
 {}{}{test}",
-            table(number, "TEST_INPUTS", ROWS * inputs, &rows.inputs),
-            table(number, "TEST_OUTPUTS", ROWS * outputs, &rows.outputs),
+            table(number, "ROWS_IN", ROWS * inputs, &rows.inputs),
+            table(number, "ROWS_OUT", ROWS * outputs, &rows.outputs),
         );
         let functions = FUNCTIONS.iter().rev().fold(main, |code, (call, function)| {
             let calls = code
@@ -133,8 +130,8 @@ void {name}_step({name}_state *state, const {number} *inputs, {number} *outputs)
         let number = code.number;
         let copy = match (inputs, number) {
             (0, _) => String::new(),
-            (_, "float") => format!("        copy(inputs, TEST_INPUTS + row * {inputs}, {inputs});\n"),
-            _ => format!("        copy_integers(inputs, TEST_INPUTS + row * {inputs}, {inputs});\n"),
+            (_, "float") => format!("        copy(inputs, ROWS_IN + row * {inputs}, {inputs});\n"),
+            _ => format!("        copy_integers(inputs, ROWS_IN + row * {inputs}, {inputs});\n"),
         };
         let compare = match (outputs, number) {
             (0, _) => String::new(),
@@ -142,14 +139,14 @@ void {name}_step({name}_state *state, const {number} *inputs, {number} *outputs)
                 "        for (int i = 0; i < {outputs}; i++) {{
             word here, there;
             here.real = outputs[i];
-            there.real = READ(TEST_OUTPUTS + row * {outputs} + i);
+            there.real = READ(ROWS_OUT + row * {outputs} + i);
             if (here.bits != there.bits) differs = 1;
         }}
 "
             ),
             _ => format!(
                 "        for (int i = 0; i < {outputs}; i++)
-            if (outputs[i] != (int16_t)READ(TEST_OUTPUTS + row * {outputs} + i)) differs = 1;
+            if (outputs[i] != (int16_t)READ(ROWS_OUT + row * {outputs} + i)) differs = 1;
 "
             ),
         };
