@@ -124,3 +124,8 @@ s/Least and greatest distance from the robot's centre to the lamp's at the start
 s/Weight of each light sensor, plus (2a, 2b) or minus (3a, 3b), in parts of the greatest wheel speed\./Weight of each light sensor in shares of the greatest wheel speed, positive in 2a and 2b, negative in 3a and 3b./
 s/Wheel speed in the dark, in parts of the greatest: a little where light drives, half where it slows\./Wheel speed in the dark, in shares of the greatest: a little where light drives the wheels, half where it slows them./
 s/Generations of one parent and one mutant; the one thing that a resumed run may change\./Generations of one parent and one mutant. A resumed run may change it, and nothing else./
+s/What happens to a bit that mutation hits: it is drawn anew, or it flips\./Change of a bit that mutation hits: it is drawn again, or it flips./
+s/What happens to a bit that mutation hits: it flips, or it is drawn anew\./Change of a bit that mutation hits: it flips, or it is drawn again./
+s/Nearest behaviours (k), whose/Nearest behaviors (k), whose/
+s/Probability that a behaviour enters the archive/Probability that a behavior enters the archive/
+s/How behaviours are divided into cells: a grid/Division of behaviors into cells: a grid/

@@ -276,7 +276,7 @@ impl<'l> RunReader<'l> {
         let populations = self.evaluator.info().populations;
         let (_, kept) = Log::resume(&directory.log(), &[], &populations)?;
         let written = fs::read(directory.log()).map_err(Error::io("read", &directory.log()))?;
-        assert!(written == header(&populations).as_bytes(), "a log that was taken up says something else");
+        assert!(written == header(&populations).as_bytes(), "a resumed log has other content");
         let lineage = Mark::of(HEADER.as_bytes());
         Lineage::resume(&directory.lineage(), lineage, |_| Ok(()))?;
         Failures::resume(&directory.failures(), lineage)?;

@@ -58,6 +58,7 @@ pub trait Objective: Clone + Send + 'static {
     }
 
     /// Checks whether the trial succeeded, at its end. `None`, the default, is a task without a criterion of success.
+    /// It must be `Some` from the start, or always `None`.
     fn success(&self) -> Option<bool> {
         None
     }

@@ -178,7 +178,7 @@ impl NetworkExport {
         entries.into()
     }
 
-    /// Everything but the tables, by name.
+    /// Lists everything except the tables, by name.
     fn facts(&self) -> Vec<(&'static str, Fact)> {
         match self {
             Self::Leaky { layout, leak, .. } => vec![
@@ -217,7 +217,7 @@ impl NetworkExport {
     }
 }
 
-/// The meaning of the rows and columns of a table.
+/// Describes the rows and columns of a table.
 fn meaning(network: &NetworkExport, table: &str) -> &'static str {
     match (network, table) {
         (_, "sensor_weights") => "row j, column i: from sensor j to hidden neuron i",
@@ -287,7 +287,7 @@ fn group(group: &Group) -> Value {
     json!({"neurons": neurons, "activation": activation.name(), "slope": slope, "bias": bias, "gain": gain, "leak": leak})
 }
 
-/// A block by its effect. Spans are \[first neuron, neurons\].
+/// Describes a block by its effect. Spans are \[first neuron, neurons\].
 fn block(block: &Block) -> Value {
     match *block {
         Block::Connect { from, to, delay } => {

@@ -153,9 +153,9 @@ fn mjcf_options(evaluator: &dyn Evaluator, step: f64) -> MjcfOptions {
     })
 }
 
-/// Origin of a controller.
+/// A controller with its origin.
 #[derive(Serialize)]
-struct Whose<'a> {
+struct ChampionController<'a> {
     /// Version of the meaning of fields.
     format: u32,
     experiment: &'a str,
@@ -170,7 +170,7 @@ struct Whose<'a> {
     controller: ControllerExport,
 }
 
-impl Whose<'_> {
+impl ChampionController<'_> {
     fn text(&self) -> String {
         let Self { experiment, condition, seed, generation, individual, population, .. } = self;
         let population = population.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
@@ -198,8 +198,8 @@ fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Direct
     match normalisation {
         None => Ok(()),
         Some(_) => Err(Error::Usage(format!(
-            "{}: its champion's observations are normalised (`{NORMALISE}`), which no exported file can say: test and \
-             replay it here",
+            "{}: its champion's observations are normalized (`{NORMALISE}`), which no exported file can describe: test \
+             and replay it here",
             directory.path().display()
         ))),
     }
@@ -208,7 +208,7 @@ fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Direct
 /// Returns the champion's genes as a `.gen` file, or real parameters as a list.
 ///
 /// # Errors
-/// [`Error::Usage`] or [`Error::Setting`] for the population, [`Error::File`], [`Error::Usage`].
+/// [`Error::Usage`] or [`Error::Setting`] for the population, [`Error::Usage`] for normalized observations, and [`Error::File`].
 pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<String, Error> {
     let evaluator = plan.evaluator()?;
     let Champion { generation, individual, genes, normalisation, .. } =
@@ -227,9 +227,13 @@ pub(crate) fn genotype(plan: &Plan<'_>, directory: &Directory, population: Optio
 /// Reads the controller of the champion.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment whose controllers cannot be exported, [`Error::Usage`] or [`Error::Setting`] for the
-/// population, [`Error::File`], [`Error::Usage`].
-fn whose<'a>(plan: &'a Plan<'_>, directory: &Directory, population: Option<&str>) -> Result<Whose<'a>, Error> {
+/// [`Error::Usage`] for a controller that cannot be exported, [`Error::Usage`] or [`Error::Setting`] for the population, and
+/// [`Error::File`].
+fn champion_controller<'a>(
+    plan: &'a Plan<'_>,
+    directory: &Directory,
+    population: Option<&str>,
+) -> Result<ChampionController<'a>, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
     let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
@@ -247,15 +251,23 @@ fn whose<'a>(plan: &'a Plan<'_>, directory: &Directory, population: Option<&str>
     let Champion { generation, individual, .. } = champion;
     let population = names.get(champion.population).filter(|_| names.len() > 1).cloned();
     let (seed, condition) = (plan.seed, plan.condition.as_str());
-    Ok(Whose { format: 1, experiment: name, condition, seed, generation, individual, population, controller })
+    Ok(ChampionController {
+        format: 1,
+        experiment: name,
+        condition,
+        seed,
+        generation,
+        individual,
+        population,
+        controller,
+    })
 }
 
 /// Returns the files of the champion's controller: the content for standard output, or named files. `out` is the path
 /// that the user requests.
 ///
 /// # Errors
-/// [`Error::Usage`] for an experiment whose controllers cannot be exported or for an invalid name, [`Error::Usage`] or
-/// [`Error::Setting`] for the population, [`Error::File`], [`Error::Usage`].
+/// Errors of [`champion_controller`], and [`Error::Usage`] for an invalid name.
 pub(crate) fn controller(
     plan: &Plan<'_>,
     directory: &Directory,
@@ -263,22 +275,26 @@ pub(crate) fn controller(
     format: ControllerFormat,
     out: Option<PathBuf>,
 ) -> Result<Exported, Error> {
-    let whose = whose(plan, directory, population)?;
+    let champion = champion_controller(plan, directory, population)?;
     let content = match format {
-        ControllerFormat::Json => pretty(&whose)?.into_bytes(),
-        ControllerFormat::Bytes => controller_formats::bytes(&whose.controller)?,
-        ControllerFormat::Rust => controller_formats::rust(&whose.controller, &whose.text())?.into_bytes(),
+        ControllerFormat::Json => pretty(&champion)?.into_bytes(),
+        ControllerFormat::Bytes => controller_formats::bytes(&champion.controller)?,
+        ControllerFormat::Rust => controller_formats::rust(&champion.controller, &champion.text())?.into_bytes(),
         ControllerFormat::Safetensors => {
-            let about = serde_json::to_value(&whose).map_err(|error| Error::Other(error.to_string()))?;
-            controller_formats::safetensors(&whose.controller, about)?
+            let about = serde_json::to_value(&champion).map_err(|error| Error::Other(error.to_string()))?;
+            controller_formats::safetensors(&champion.controller, about)?
         }
-        ControllerFormat::C | ControllerFormat::CIntegers => return c_files(&whose, format, out),
+        ControllerFormat::C | ControllerFormat::CIntegers => return c_files(&champion, format, out),
     };
     Ok(Exported::of(content, out))
 }
 
 /// Returns the header and the source, named after the requested path or `controller`.
-fn c_files(whose: &Whose<'_>, format: ControllerFormat, out: Option<PathBuf>) -> Result<Exported, Error> {
+fn c_files(
+    champion: &ChampionController<'_>,
+    format: ControllerFormat,
+    out: Option<PathBuf>,
+) -> Result<Exported, Error> {
     let out = out.unwrap_or_else(|| PathBuf::from("controller.c"));
     if out.extension().is_some_and(|extension| extension != "c" && extension != "h") {
         return Err(Error::Usage(format!(
@@ -288,7 +304,7 @@ fn c_files(whose: &Whose<'_>, format: ControllerFormat, out: Option<PathBuf>) ->
         )));
     }
     let name = out.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let (controller, about) = (&whose.controller, whose.text());
+    let (controller, about) = (&champion.controller, champion.text());
     let files = match format {
         ControllerFormat::CIntegers => controller.c_integers(&name, &about)?,
         _ => controller.c(&name, &about)?,

@@ -235,8 +235,9 @@ impl LiveSession {
         let outcomes = outcomes(evaluator.as_mut(), evaluations.collect());
         let fitness = outcomes.iter().map(|outcome| fitness(evaluator.as_ref(), std::slice::from_ref(outcome)));
         let fitness: Vec<f64> = fitness.collect();
-        let results = outcomes.iter().map(|outcome| success(evaluator.as_ref(), outcome)).collect::<Option<Vec<_>>>();
-        let successes = results.map(|results| results.into_iter().filter(|success| *success).count());
+        let successes = outcomes
+            .iter()
+            .try_fold(0, |count, outcome| Some(count + usize::from(success(evaluator.as_ref(), outcome)?)));
         Ok(FreshResults { trials: outcomes.len(), successes, fitness })
     }
 

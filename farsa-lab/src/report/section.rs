@@ -142,10 +142,10 @@ fn task(groups: &[Group<'_>]) -> Result<Table, Error> {
                 let (genes, bits) = (evaluator.info().parameters.len(), run.plan.experiment.gene_bits());
                 format!("{} of {}", counted(genes, "gene"), counted(bits as usize, "bit"))
             },
-            [evaluator.info().combined(), evaluator.info().terms.join(" + ")]
-                .join(": ")
-                .trim_start_matches(": ")
-                .into(),
+            match (evaluator.info().combined(), evaluator.info().terms.join(" + ")) {
+                (combined, terms) if combined.is_empty() => terms,
+                (combined, terms) => format!("{combined}: {terms}"),
+            },
         ];
         table.head.push(group.label.clone());
         for (row, cell) in table.rows.iter_mut().zip(cells) {

@@ -14,14 +14,14 @@ const RATE: &str = "strategy.archive_rate";
 /// Novelty search, [`farsa_evo::archives::NoveltySearch`].
 pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
     name: "novelty-search",
-    summary: "The truncation algorithm for new behaviours in the place of fitness; wants a behaviour descriptor [Lehman2011].",
+    summary: "The truncation algorithm for new behaviors instead of fitness; wants a behavior descriptor [Lehman2011].",
     settings: || {
         let mut table = Truncation.settings();
         table.extend([
             Setting::whole(NEIGHBOURS, 15, 1..=1_000_000)
                 .given()
-                .doc("Nearest behaviours (k), whose mean distance is the novelty; each value in shares of its range."),
-            Setting::number(RATE, 0.02, 0.0..=1.0).doc("Probability that a behaviour enters the archive."),
+                .doc("Nearest behaviors (k), whose mean distance is the novelty; each value in shares of its range."),
+            Setting::number(RATE, 0.02, 0.0..=1.0).doc("Probability that a behavior enters the archive."),
         ]);
         table
     },
@@ -41,7 +41,7 @@ pub(super) static NOVELTY_SEARCH: SimpleStrategy = SimpleStrategy {
     diagnostics: Some(Diagnostics {
         file: "strategy",
         charts: &[
-            DiagnosticsChart { title: "archive", axis: "behaviours", curves: &[("archive", "in the archive")] },
+            DiagnosticsChart { title: "archive", axis: "behaviors", curves: &[("archive", "in the archive")] },
             DiagnosticsChart { title: "novelty", axis: "distance", curves: &[("novelty", "the largest")] },
         ],
     }),

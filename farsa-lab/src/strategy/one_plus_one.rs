@@ -37,7 +37,7 @@ impl StrategyDefinition for OnePlusOne {
                 .doc("Generations of one parent and one mutant. A resumed run may change it, and nothing else."),
             Setting::word(MUTATION, "flip", &["flip", "resample"])
                 .given()
-                .doc("What happens to a bit that mutation hits: it flips, or it is drawn anew."),
+                .doc("Change of a bit that mutation hits: it flips, or it is drawn again."),
             Setting::number(FIRST_RATE, 0.5, 0.0..=1.0)
                 .given()
                 .doc("Probability that mutation hits a bit of the first mutant."),

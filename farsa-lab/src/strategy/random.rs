@@ -9,7 +9,7 @@ use crate::strategy::simple::SimpleStrategy;
 /// Genomes drawn at random in every generation, [`farsa_evo::words::RandomSearch`].
 pub(super) static RANDOM: SimpleStrategy = SimpleStrategy {
     name: "random-search",
-    summary: "Every genome is drawn anew: what other strategies find beyond this is owed to selection.",
+    summary: "Every genome is drawn again at random. Better results of other strategies come from selection.",
     settings: || {
         vec![
             Setting::whole(GENERATIONS, 1000, 1..=i64::from(u32::MAX) - 1)

@@ -43,7 +43,7 @@ impl StrategyDefinition for Truncation {
                 .doc("The best individuals, which make population / parents copies each. The first copy is unchanged."),
             Setting::word(MUTATION, "resample", &["resample", "flip"])
                 .given()
-                .doc("What happens to a bit that mutation hits: it is drawn anew, or it flips."),
+                .doc("Change of a bit that mutation hits: it is drawn again, or it flips."),
             Setting::number(RATE, 0.015, 0.0..=1.0).given().doc("Probability that mutation hits a bit."),
         ]
     }

@@ -23,7 +23,7 @@ const POINTS: usize = 10;
 fn division() -> [Setting; 2] {
     [
         Setting::word(DIVISION, "grid", &["grid", "cvt"]).doc(
-            "How behaviours are divided into cells: a grid of equal parts, or a centroidal Voronoi tessellation [Vassiliades2018].",
+            "Division of behaviors into cells: a grid of equal parts, or a centroidal Voronoi tessellation [Vassiliades2018].",
         ),
         Setting::whole(CELLS, 1024, 1..=1_000_000)
             .doc("Cells of the archive; of a grid the most, as many parts of each value's range as fit."),
@@ -42,7 +42,7 @@ const ARCHIVE: Diagnostics = Diagnostics {
 /// MAP-Elites with the iso-line or Gaussian emitter, [`farsa_evo::archives::MapElites`].
 pub(in crate::strategy) static MAP_ELITES: SimpleStrategy = SimpleStrategy {
     name: "map-elites",
-    summary: "The best individual of each cell of behaviours; wants a behaviour descriptor [Mouret2015] [Mouret2018].",
+    summary: "The best individual of each cell of behaviors; wants a behavior descriptor [Mouret2015] [Mouret2018].",
     settings: || {
         let mut table = sizes(Setting::whole(POPULATION, 100, 1..=1_000_000).doc("Individuals of a generation."));
         table.extend(division());

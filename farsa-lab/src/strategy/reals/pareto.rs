@@ -16,7 +16,7 @@ const MUTATION_INDEX: &str = "strategy.mutation_index";
 /// Elitist non-dominated sorting genetic algorithm, [`farsa_evo::pareto::Nsga2`].
 pub(in crate::strategy) static NSGA2: SimpleStrategy = SimpleStrategy {
     name: "nsga2",
-    summary: "The front of several objectives, by sorting those that nobody dominates; wants two objectives [Deb2002].",
+    summary: "The front of several objectives, by non-dominated sorting; wants two objectives [Deb2002].",
     settings: || {
         let mut table =
             sizes(Setting::whole(POPULATION, 100, 1..=1_000_000).given().doc("Individuals of a generation (N)."));
@@ -51,10 +51,6 @@ pub(in crate::strategy) static NSGA2: SimpleStrategy = SimpleStrategy {
     },
     diagnostics: Some(Diagnostics {
         file: "strategy",
-        charts: &[DiagnosticsChart {
-            title: "front",
-            axis: "individuals",
-            curves: &[("front", "that nobody dominates")],
-        }],
+        charts: &[DiagnosticsChart { title: "front", axis: "individuals", curves: &[("front", "non-dominated")] }],
     }),
 };
