@@ -30,6 +30,15 @@ const SCALARS: [(&str, &str); 13] = [
     ("place", "ball z [m]"),
 ];
 
+/// Explanations of the first sensors in pages.
+const OFFSETS: [&str; 2] = [
+    "offset dx of the ball from the hand to the left in the left eye's image, in widths of the image",
+    "offset dy of the ball from the hand upwards in the left eye's image, in widths of the image",
+];
+/// Explanation of a judged quantity in pages.
+const OPPOSITION: &str =
+    "(1 - cos) / 2 of the widest angle between two parts that touch the ball, 1 for opposite sides";
+
 /// Columns and rows of the left eye's image. It is recorded but not visible to the agent.
 pub(crate) const IMAGE: [usize; 2] = [32, 24];
 
@@ -39,7 +48,14 @@ pub(crate) fn schema(scene: &Scene) -> Schema {
     let mut schema = schema.with_network(&scene.config.layout()).with_image("left eye", IMAGE);
     schema.sensors[..2].iter_mut().for_each(|channel| channel.range = Some([-1.0, 1.0]));
     schema.sensors[2..].iter_mut().chain(&mut schema.outputs).for_each(|channel| channel.range = Some([0.0, 1.0]));
-    let scalars = SCALARS.into_iter().map(|(group, name)| Channel::new(name).group(group)).collect();
+    for (channel, about) in schema.sensors.iter_mut().zip(OFFSETS) {
+        about.clone_into(&mut channel.about);
+    }
+    let scalars = SCALARS.into_iter().map(|(group, name)| {
+        let about = if name == "opposition" { OPPOSITION } else { "" };
+        Channel::new(name).group(group).about(about)
+    });
+    let scalars = scalars.collect();
     Schema { scalars, points: vec!["palm's centre".into()], ..schema }
 }
 

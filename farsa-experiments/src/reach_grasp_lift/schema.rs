@@ -114,12 +114,20 @@ impl EpisodeRecorder {
         });
         let scalars = core::iter::once(Channel::new("phase").group("phase").words(&phases))
             .chain(JUDGED.map(|(name, label, about)| in_group("fitness")(name).labelled(label).about(about)))
-            .chain(placed.into_iter().chain(turned).map(in_group("place")))
+            .chain(placed.into_iter().map(in_group("place")))
+            .chain(
+                turned
+                    .into_iter()
+                    .map(|name| in_group("place")(name).about("component of the unit quaternion of its rotation")),
+            )
             .chain(joints)
             .chain(muscles.map(|name| in_group("actuator")(&name)))
             .chain(forces)
             .chain((1..=27).map(|n| in_group("speed")(&format!("J{n} [rad/s]"))))
-            .chain(moved.map(in_group("speed")))
+            .chain(moved.map(|name| {
+                let about = if name.contains(".w") { "angular velocity about an axis of the world" } else { "" };
+                in_group("speed")(name).about(about)
+            }))
             .collect();
         let mut schema = Schema::from_robot(&scene.robot)
             .with_sensors(episode.senses().names())

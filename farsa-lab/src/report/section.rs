@@ -169,8 +169,10 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
     let broken_down = tests.clone().any(|test| test.findings.broken_down > 0);
     let mut table = Table::new(&["run", "champion of", "trials"]);
     table.head.extend(broken_down.then(|| "broken down".to_owned()));
-    table.head.extend(["success", "trial by trial", "fitness"].map(str::to_owned));
+    table.head.extend(["success", "fitness"].map(str::to_owned));
     table.head.extend(names.iter().map(|&name| name.to_owned()));
+    // Last, since it is the widest.
+    table.head.push("trial by trial".into());
     let mut missing = Vec::new();
     for group in groups {
         let mut rows: Vec<Vec<String>> = Vec::new();
@@ -193,8 +195,6 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
             row.extend(broken_down.then(|| findings.broken_down.to_string()));
             row.extend([
                 if findings.successes.is_none() { NO_CRITERION.into() } else { percent(findings.rate) },
-                // Many kinds of trials are only counted.
-                if by_trial.len() > 8 { format!("{} kinds", by_trial.len()) } else { by_trial.join(", ") },
                 short(findings.fitness),
             ]);
             for &name in &names {
@@ -209,6 +209,8 @@ fn tests(groups: &[Group<'_>], program: &str) -> Result<Vec<Block>, Error> {
                     }
                 });
             }
+            // Many kinds of trials are only counted.
+            row.push(if by_trial.len() > 8 { format!("{} kinds", by_trial.len()) } else { by_trial.join(", ") });
             rows.push(row);
         }
         let middle = (rows.len() > 1).then(|| middle(group, &names, broken_down));
@@ -243,7 +245,6 @@ fn middle(group: &Group<'_>, names: &[&str], broken_down: bool) -> Vec<String> {
     row.extend(broken_down.then(String::new));
     row.extend([
         shown(findings.iter().map(|found| found.rate).collect(), percent),
-        String::new(),
         shown(findings.iter().map(|found| found.fitness).collect(), short),
     ]);
     for &name in names {
@@ -253,6 +254,7 @@ fn middle(group: &Group<'_>, names: &[&str], broken_down: bool) -> Vec<String> {
         });
         row.push(shown(means.collect(), short));
     }
+    row.push(String::new());
     row
 }
 

@@ -163,10 +163,12 @@ pub(crate) fn escaped(text: &str) -> String {
     html
 }
 
-/// Formats a number for readers. It has at most three decimals.
+/// Formats a number for readers. It has at most three decimals, and none if it is whole.
 pub fn readable(x: f64) -> String {
     let mut text = String::new();
-    let decimals = if x.abs() >= 1000.0 {
+    // A tiny negative number would be -0.000.
+    let x = if x.abs() < 0.0005 { 0.0 } else { x };
+    let decimals = if x.abs() >= 1000.0 || x == x.round() {
         0
     } else if x.abs() >= 10.0 {
         1

@@ -100,6 +100,7 @@ fn arm(side: Side) -> Vec<Parts> {
             0.024,
             DARK,
         ),
+        part(6).capsule([0.0; 3], [0.022, 0.0, 0.0], 0.016, DARK),
     ];
     parts.into_iter().map(|part| part.on_side(side == Side::Left)).collect()
 }

@@ -262,7 +262,7 @@ class Scene {
 		const {eye, middle, reach, placed} = this;
 		const far = 0.58*hypot(...sub(...boundsOf(trial.balls)));
 		const light = product(parallel(far, far, 6*far), viewFrom(add(middle, mul(SUN, 3*far)), axesOf(SUN)));
-		this.set({camera: light, light, sun: SUN, eye, fog: paint("sky"), middle, reach, plain: 0, grid: 0});
+		this.set({camera: light, light, sun: SUN, eye, fog: paint("sky"), middle: camera.carried ?? middle, reach, plain: 0, grid: 0});
 		this.drawShadows(placed);
 		this.drawShapes(placed);
 		this.drawMarks(trial, tick, visible);

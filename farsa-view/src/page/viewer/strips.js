@@ -6,6 +6,8 @@ const WORDS = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2",
 
 // Values of both signs differ in color, others in brightness. Returns 0..255.
 function heatOf({low, high}, value) {
+	// A constant is compared with 0.
+	if (low === high) [low, high] = [min(0, low), max(0, high)];
 	const both = low < 0 && high > 0;
 	const stops = both ? DIVERGING : CIVIDIS;
 	const u = both ? 0.5 + value/2/max(-low, high) : (value - low)/(high - low || 1);
@@ -186,7 +188,7 @@ function stripsOf(seek) {
 		// Columns of a narrow page are as wide as their content.
 		const own = rows.slice(-names.length);
 		const values = own.flatMap(({scale}) => scale.words || [scale.low, scale.high].map((end) => show(scale, end)));
-		const columns = {w: trials.length*(wide(13, values) + 14) - 14, u: wide(12, own.map(({unit}) => unit)), s: min(106, wide(12, own.map(({told}) => told)))};
+		const columns = {w: trials.length*(wide(13, values) + 14) - 14, u: wide(12, own.map(({unit}) => unit)), s: min(122, wide(12, own.map(({told}) => told)))};
 		for (const [name, width] of Object.entries(columns)) made.style.setProperty(`--${name}`, `${width}px`);
 		made.dataset.group = group;
 		const folded = () => {
@@ -217,7 +219,7 @@ function stripsOf(seek) {
 		const title = make("span", "name", label);
 		const element = make("div", `row ${kind}`, title, make("span", "values", ...values), make("span", "unit", unit), canvas, make("span", "unit", told));
 		element.dataset.name = name;
-		element.title = `${group} ${name}${words ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}${about && `: ${about}`}`;
+		element.title = `${group} ${name}${words || whole ? "" : ` within ${(scale/2).toPrecision(2)} ${unit}`}${about && `: ${about}`}`;
 		const row = element.row = {canvas, channels, kind, values, title, label, unit, told, scale: {words, low, high, whole}};
 		rows.push(row);
 		watch.observe(element);

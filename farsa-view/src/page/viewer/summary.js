@@ -38,8 +38,8 @@ function startsOf(trials) {
 		return [0, 1, 2].map((i) => max(...at.map((p) => p[i])) - min(...at.map((p) => p[i])));
 	});
 	const far = spans.map((span) => hypot(...span));
-	const body = far.findIndex((span) => span >= 0.8*max(...far));
-	if (!(far[body] > 1e-4)) return null;
+	const body = far.findIndex((span) => span >= 0.5*max(...far));
+	if (!(far[body] > 1e-3)) return null;
 	const axes = [0, 1, 2].sort((a, b) => spans[body][b] - spans[body][a]).slice(0, 2).sort();
 	return {body, axes, places: trials.map(({starts}) => axes.map((i) => starts[body][i]))};
 }
