@@ -55,23 +55,19 @@ impl Queue<'_, '_> {
     /// Checks that every directory has the expected run, or none, and returns the individuals that are left of each run.
     ///
     /// # Errors
-    /// The errors of [`finished`] and of the member.
+    /// The errors of [`Work::of_run`] and of the member.
     pub(crate) fn check(&self) -> Result<Vec<u64>, Error> {
         // Runs in one folder differ in their seeds, so their generations have one size.
         let mut size: Option<(PathBuf, u64)> = None;
         let left = (0..self.count).map(|number| {
             let Member { plan, path, .. } = (self.member)(number)?;
-            if finished(&plan, &path)?.is_some() {
-                return Ok(0);
-            }
+            let Work::Left { generations } = Work::of_run(&plan, &path)? else { return Ok(0) };
             let folder = path.parent().unwrap_or(&path).to_path_buf();
             let size = match &size {
                 Some((other, size)) if *other == folder => *size,
                 _ => size.insert((folder, plan.strategy()?.individuals() as u64)).1,
             };
-            let checkpoint = Directory::open(&path).ok().and_then(|directory| Checkpoint::read(&plan, &directory).ok());
-            let done = checkpoint.map_or(0, |checkpoint| checkpoint.generation);
-            Ok(u64::from(plan.generations()?.saturating_sub(done)) * size)
+            Ok(u64::from(generations) * size)
         });
         left.collect()
     }
@@ -111,11 +107,11 @@ impl Queue<'_, '_> {
     fn turn(&self, number: usize, study: Option<Study>, stop: &AtomicBool) -> Result<State, Error> {
         let Member { plan, path, name } = (self.member)(number)?;
         let place = OneLine(path.display());
-        let skip = |summary: Summary| {
+        let skip = |summary: Box<Summary>| {
             self.tell(&format!("{name}: {place}: {}", finished_already(summary.generations)));
-            Ok(State::Finished { summary: Box::new(summary), skipped: true })
+            Ok(State::Finished { summary, skipped: true })
         };
-        if let Some(summary) = finished(&plan, &path)? {
+        if let Work::Done(summary) = Work::of_run(&plan, &path)? {
             return skip(summary);
         }
         if stop.load(Ordering::Relaxed) {
@@ -127,7 +123,7 @@ impl Queue<'_, '_> {
             return Ok(State::Elsewhere(path));
         };
         // Checked again, because another process may have finished the run before it released the lock.
-        if let Some(summary) = finished(&plan, &path)? {
+        if let Work::Done(summary) = Work::of_run(&plan, &path)? {
             return skip(summary);
         }
         self.tell(&format!("{name}: {place}{}", if new { "" } else { ": continues" }));
@@ -181,47 +177,58 @@ fn opened(plan: &Plan<'_>, path: &Path) -> Result<(Directory, bool), Error> {
     }
 }
 
-/// Returns the summary of a run with all its generations, and `None` for one to begin or continue.
-///
-/// # Errors
-/// [`Error::File`] by other files, [`Error::Usage`] by another run or one with more generations,
-/// and any error that prevents the run from being continued.
-pub(crate) fn finished(plan: &Plan<'_>, path: &Path) -> Result<Option<Summary>, Error> {
-    let directory = match Directory::open(path) {
-        Ok(directory) => directory,
-        Err(_) => match vacant(path) {
-            // Another process has created it in between.
-            Err(Error::File { fault: FileFault::Occupied, .. }) if path.join("config.toml").is_file() => {
-                Directory::open(path)?
-            }
-            vacant => return vacant.map(|()| None),
-        },
-    };
-    let file = directory.checkpoint();
-    let Checkpoint { identity, generation: done, .. } = Checkpoint::read(plan, &directory)?;
-    identity.same_values(&plan.identity()?, &file)?;
-    let asked = plan.generations()?;
-    if done < asked {
-        return Ok(None);
+/// Finished or remaining work of a run.
+#[derive(Debug)]
+pub(crate) enum Work {
+    /// All generations are finished.
+    Done(Box<Summary>),
+    /// The run is to be begun or continued.
+    Left { generations: u32 },
+}
+
+impl Work {
+    /// Reads the progress of a run, which may not have begun.
+    ///
+    /// # Errors
+    /// [`Error::File`] by other files, [`Error::Usage`] by another run or one with more generations,
+    /// and any error that prevents the run from being continued.
+    pub(crate) fn of_run(plan: &Plan<'_>, path: &Path) -> Result<Self, Error> {
+        let asked = plan.generations()?;
+        let directory = match Directory::open(path) {
+            Ok(directory) => directory,
+            Err(_) => match vacant(path) {
+                // Another process has created it in between.
+                Err(Error::File { fault: FileFault::Occupied, .. }) if path.join("config.toml").is_file() => {
+                    Directory::open(path)?
+                }
+                vacant => return vacant.map(|()| Self::Left { generations: asked }),
+            },
+        };
+        let file = directory.checkpoint();
+        let Checkpoint { identity, generation: done, .. } = Checkpoint::read(plan, &directory)?;
+        identity.same_values(&plan.identity()?, &file)?;
+        if done < asked {
+            return Ok(Self::Left { generations: asked - done });
+        }
+        if done > asked {
+            return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
+        }
+        let champions = Champions::read(plan, &directory)?;
+        let names = if champions.best.len() > 1 { plan.evaluator()?.info().populations } else { Vec::new() };
+        let champions = Winner::from_champions(&champions, &names);
+        Ok(Self::Done(Box::new(Summary {
+            directory: path.into(),
+            experiment: identity.experiment,
+            condition: identity.condition,
+            seed: identity.seed,
+            generations: done,
+            evaluations: 0,
+            failed: failures::count(&directory.failures())?,
+            seconds: 0.0,
+            test: None,
+            combined: String::new(),
+            champion: champions.first().cloned(),
+            champions: if champions.len() > 1 { champions } else { Vec::new() },
+        })))
     }
-    if done > asked {
-        return Err(Error::Usage(format!("{}: has finished {done} generations already", path.display())));
-    }
-    let champions = Champions::read(plan, &directory)?;
-    let names = if champions.best.len() > 1 { plan.evaluator()?.info().populations } else { Vec::new() };
-    let champions = Winner::from_champions(&champions, &names);
-    Ok(Some(Summary {
-        directory: path.into(),
-        experiment: identity.experiment,
-        condition: identity.condition,
-        seed: identity.seed,
-        generations: done,
-        evaluations: 0,
-        failed: failures::count(&directory.failures())?,
-        seconds: 0.0,
-        test: None,
-        combined: String::new(),
-        champion: champions.first().cloned(),
-        champions: if champions.len() > 1 { champions } else { Vec::new() },
-    }))
 }

@@ -13,7 +13,7 @@ use crate::figures::statistics::{Quartiles, median};
 use crate::run::laboratory::Laboratory;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
-use crate::run::queue::{Member, Queue, State, finished};
+use crate::run::queue::{Member, Queue, State, Work};
 use crate::run::summary::{ChampionTest, Summary};
 use crate::run::text_table::text_table;
 use crate::sweep::points::Points;
@@ -152,7 +152,10 @@ impl<'s, 'e> Sweep<'s, 'e> {
         self.check(&runs, ready)?;
         let states = runs.iter().map(|run| {
             let Member { plan, path, .. } = self.member(*run)?;
-            Ok(finished(&plan, &path)?.map(|summary| State::Finished { summary: Box::new(summary), skipped: true }))
+            Ok(match Work::of_run(&plan, &path)? {
+                Work::Done(summary) => Some(State::Finished { summary, skipped: true }),
+                Work::Left { .. } => None,
+            })
         });
         let states: Vec<Option<State>> = states.collect::<Result<_, Error>>()?;
         Ok(self.found(&runs, states.into_iter()))
