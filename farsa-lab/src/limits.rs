@@ -1,5 +1,8 @@
 //! Limits of files, memory and requests.
 
+/// Most trials of a test.
+pub(crate) const MAX_TRIALS: u32 = 100_000_000;
+
 /// Limits of files, memory and requests. A plan carries them, so that tests can lower them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -26,7 +29,7 @@ impl Limits {
         record_bytes: 1 << 32,
         state_bytes: 256 << 20,
         recording_bytes: 256 << 20,
-        trials: 100_000_000,
+        trials: MAX_TRIALS as usize,
         cases: 60,
         line_bytes: 16 << 20,
         vectors: 65_536,

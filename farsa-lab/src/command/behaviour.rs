@@ -1,15 +1,24 @@
-//! Objectives and behavior of an experiment, as text and JSON.
+//! Fitness, objectives and behavior of an experiment, as text and JSON.
 
 use std::fmt::Write as _;
 
 use serde::Serialize;
 
 use crate::experiment::behavior::Behavior;
+use crate::experiment::evaluator::TaskInfo;
+use crate::experiment::outcome::{Combination, NO_CRITERION};
 use crate::experiment::parameter::Parameter;
+use crate::figures::significant::remark;
 
-/// Objectives and measures of an experiment, with the names of its JSON.
+/// Success, objectives and measures of an experiment, with the names of its JSON.
 #[derive(Serialize)]
 pub(crate) struct BehaviourInfo {
+    /// Combination of the trials into the fitness.
+    combination: Option<Combination>,
+    #[serde(skip)]
+    combined: String,
+    /// False without a criterion of success.
+    has_success: bool,
     /// Objectives of multi-objective strategies, the fitness first.
     objectives: Vec<String>,
     /// Measures of behavior.
@@ -25,20 +34,27 @@ struct MeasureInfo {
 }
 
 impl BehaviourInfo {
-    /// Creates the objectives and measures of an experiment, if any.
-    pub(crate) fn new(behaviour: Option<&dyn Behavior>) -> Self {
+    /// Describes the fitness of a task with its objectives and measures, if any.
+    pub(crate) fn new(task: &TaskInfo, behaviour: Option<&dyn Behavior>) -> Self {
         let others = behaviour.map(Behavior::objectives).unwrap_or_default();
         let measures = behaviour.map(Behavior::measures).unwrap_or_default();
         let measure = |Parameter { name, ends }| MeasureInfo { name, range: ends };
         Self {
+            combination: task.combination,
+            combined: task.combined(),
+            has_success: task.has_success,
             objectives: ["fitness".into()].into_iter().chain(others).collect(),
             measures: measures.into_iter().map(measure).collect(),
         }
     }
 
-    /// Returns a line for objectives and one for measures, where there are any.
-    pub(crate) fn text(&self) -> String {
-        let mut text = String::new();
+    /// Returns a line for the terms of the fitness with their combination, and lines for an absent criterion of success,
+    /// objectives and measures.
+    pub(crate) fn text(&self, terms: &[String]) -> String {
+        let mut text = format!("fitness: {}{}\n", terms.join(", "), remark(&self.combined));
+        if !self.has_success {
+            let _ = writeln!(text, "success: {NO_CRITERION}");
+        }
         // Writing to a string cannot fail.
         if self.objectives.len() > 1 {
             let _ = writeln!(text, "objectives: {}", self.objectives.join(", "));

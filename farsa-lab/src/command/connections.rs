@@ -8,8 +8,7 @@ use crate::command::behaviour::BehaviourInfo;
 use crate::error::Error;
 use crate::experiment::controller_export::{MotorDrive, SensorReading};
 use crate::experiment::evaluator::Task;
-use crate::experiment::outcome::NO_CRITERION;
-use crate::experiment::outcome::{ChannelGroup, Combination, Description};
+use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::parameter::Parameter;
 use crate::run::plan::Plan;
 
@@ -24,12 +23,6 @@ pub(crate) struct Connections {
     parameters: Vec<Searched>,
     motors: Vec<Group>,
     terms: Vec<String>,
-    /// Combination of the trials into the fitness.
-    combination: Option<Combination>,
-    #[serde(skip)]
-    combined: String,
-    /// False without a criterion of success.
-    has_success: bool,
     #[serde(flatten)]
     behaviour: BehaviourInfo,
     trials: usize,
@@ -130,10 +123,7 @@ impl Connections {
                 .collect(),
             motors: groups(&motors, &names(&schema.outputs), &of_motors),
             terms: task.info().terms,
-            combination: task.info().combination,
-            combined: task.info().combined(),
-            has_success: task.info().has_success,
-            behaviour: BehaviourInfo::new(task.behavior()),
+            behaviour: BehaviourInfo::new(&task.info(), task.behavior()),
             trials: task.info().trials,
             steps,
             step_seconds,
@@ -155,8 +145,7 @@ impl Connections {
         let seconds = self.steps as f64 * self.step_seconds;
         let _ = writeln!(text, "\nnetwork: {}; {} parameters", self.network, self.parameters.len());
         let _ = writeln!(text, "trials: {}, each of at most {} steps ({seconds:?} s)", self.trials, self.steps);
-        text.push_str(&fitness_text(&self.terms, &self.combined, self.has_success));
-        text + &self.behaviour.text()
+        text + &self.behaviour.text(&self.terms)
     }
 
     /// Draws sensors on the left, the network, motors on the right and the terms below.
@@ -213,13 +202,6 @@ impl Connections {
         svg.push_str("</svg>\n");
         svg
     }
-}
-
-/// Formats the terms of the fitness, their combination, and the absence of a criterion of success.
-pub(super) fn fitness_text(terms: &[String], combined: &str, has_success: bool) -> String {
-    let combined = if combined.is_empty() { String::new() } else { format!(" ({combined})") };
-    let success = if has_success { String::new() } else { format!("success: {NO_CRITERION}\n") };
-    format!("fitness: {}{combined}\n{success}", terms.join(", "))
 }
 
 /// Width, rows and columns of the drawing.

@@ -5,10 +5,9 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::command::behaviour::BehaviourInfo;
-use crate::command::connections::fitness_text;
 use crate::error::Error;
 use crate::experiment::PartNames;
-use crate::experiment::outcome::{ChannelGroup, Combination, Description};
+use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::protocol::Protocol;
 use crate::experiment::settings::{Setting, Source, Value};
 use crate::figures::significant::counted;
@@ -73,12 +72,6 @@ struct Info {
     steps: usize,
     step_seconds: f64,
     fitness_terms: Vec<String>,
-    /// Combination of the trials into the fitness.
-    combination: Option<Combination>,
-    #[serde(skip)]
-    combined: String,
-    /// False without a criterion of success.
-    has_success: bool,
     #[serde(flatten)]
     behaviour: BehaviourInfo,
     /// Protocols of `farsa test --protocol`.
@@ -166,10 +159,7 @@ impl Info {
             steps,
             step_seconds,
             fitness_terms: evaluator.info().terms,
-            combination: evaluator.info().combination,
-            combined: evaluator.info().combined(),
-            has_success: evaluator.info().has_success,
-            behaviour: BehaviourInfo::new(evaluator.behavior()),
+            behaviour: BehaviourInfo::new(&evaluator.info(), evaluator.behavior()),
             protocols: protocols.into_iter().map(ProtocolInfo::new).collect(),
             lesions: evaluator.info().anatomy.map(|anatomy| anatomy.names()).unwrap_or_default(),
             settings: settings.collect(),
@@ -213,8 +203,7 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
     let seconds = info.step_seconds * info.steps as f64;
     let clock = if seconds > 0.0 { format!(" ({seconds:?} s)") } else { String::new() };
     let _ = writeln!(text, "trials: {}, each of at most {} steps{clock}", info.trials, info.steps);
-    text.push_str(&fitness_text(&info.fitness_terms, &info.combined, info.has_success));
-    text += &info.behaviour.text();
+    text += &info.behaviour.text(&info.fitness_terms);
     if !info.protocols.is_empty() {
         let _ = writeln!(text, "\nprotocols of `test --protocol`:");
     }

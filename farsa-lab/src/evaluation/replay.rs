@@ -13,12 +13,13 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
-use crate::evaluation::trials::{came_to, facts, fitness, scored, success, why_failed};
+use crate::evaluation::trials::{came_to, facts, fitness, success, why_failed};
 use crate::experiment::Anatomy;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::outcome::Outcome;
+use crate::figures::significant::{remark, scored};
 use crate::run::catch_panic::catch_printed_panic;
 use crate::run::plan::Plan;
 use crate::run::record_file::history;
@@ -346,8 +347,8 @@ impl InWords for ReplaySummary {
     /// A line, and one for the same with changes.
     fn text(&self) -> String {
         let Self { generation, individual, trials, steps, fitness, combined, lesion, .. } = self;
-        let is_combined = trials.len() > 1 && fitness.is_finite() && !combined.is_empty();
-        let combined = if is_combined { format!(" ({combined})") } else { String::new() };
+        let is_combined = trials.len() > 1 && fitness.is_finite();
+        let combined = if is_combined { remark(combined) } else { String::new() };
         let what = match trials.as_slice() {
             [ReplayedTrial { trial, .. }] => format!("trial {trial}"),
             trials => format!("{} trials", trials.len()),

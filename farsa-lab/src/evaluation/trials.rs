@@ -6,8 +6,6 @@ use farsa_view::readable;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::Evaluator;
 use crate::experiment::outcome::{NO_CRITERION, Note, Outcome};
-#[cfg(feature = "command")]
-use crate::figures::significant::significant;
 use crate::run::plan::MAX_SEED;
 
 /// Text of a mean or share over no trials.
@@ -39,12 +37,6 @@ pub(crate) fn why_failed(evaluator: &dyn Evaluator, outcome: &Outcome) -> Option
 /// Gets the success of a trial, `None` for a task without a criterion of success.
 pub(crate) fn success(evaluator: &dyn Evaluator, outcome: &Outcome) -> Option<bool> {
     evaluator.info().has_success.then(|| outcome.success && why_failed(evaluator, outcome).is_none())
-}
-
-/// Formats a fitness with four digits, or its absence after a failure.
-#[cfg(feature = "command")]
-pub(crate) fn scored(fitness: f64) -> String {
-    if fitness.is_finite() { format!("fitness {}", significant(fitness)) } else { "no fitness".into() }
 }
 
 /// Returns success and fitness of a trial as text, or the reason for which it broke down.

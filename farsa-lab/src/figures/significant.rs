@@ -17,6 +17,16 @@ pub(crate) fn significant(x: f64) -> String {
     }
 }
 
+/// Formats a fitness with four digits, or its absence after a failure.
+pub(crate) fn scored(fitness: f64) -> String {
+    if fitness.is_finite() { format!("fitness {}", significant(fitness)) } else { "no fitness".into() }
+}
+
+/// Formats an optional remark in parentheses after a space.
+pub(crate) fn remark(text: &str) -> String {
+    if text.is_empty() { String::new() } else { format!(" ({text})") }
+}
+
 /// Formats a share as a percentage, and NaN as a dash.
 pub(crate) fn percent(share: f64) -> String {
     if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
@@ -56,6 +66,12 @@ mod tests {
     #[test]
     fn shares_are_percentages() {
         assert_eq!([0.5, 1.0 / 3.0, f64::NAN].map(percent), ["50.0 %", "33.3 %", "–"]);
+    }
+
+    #[test]
+    fn a_fitness_and_a_remark_may_be_absent() {
+        assert_eq!([2.5, f64::NAN, f64::NEG_INFINITY].map(scored), ["fitness 2.500", "no fitness", "no fitness"]);
+        assert_eq!(["", "sum of 5 trials"].map(remark), ["", " (sum of 5 trials)"]);
     }
 
     #[test]

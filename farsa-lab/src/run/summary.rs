@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use crate::escaped::OneLine;
 use crate::experiment::outcome::NO_CRITERION;
-use crate::figures::significant::{counted, percent, significant};
+use crate::figures::significant::{counted, percent, remark, scored, significant};
 use crate::run::records::{Best, Champions};
 
 /// Result of a run.
@@ -77,11 +77,11 @@ impl ChampionTest {
 impl Winner {
     /// Formats the fitness, unless every evaluation of its generation failed.
     fn scored(&self, combined: &str) -> String {
+        let fitness = scored(self.fitness);
         if self.fitness.is_finite() {
-            let combined = if combined.is_empty() { String::new() } else { format!(" ({combined})") };
-            format!("fitness {}{combined}", significant(self.fitness))
+            fitness + &remark(combined)
         } else {
-            "no fitness, all evaluations of this generation failed".into()
+            fitness + ", all evaluations of this generation failed"
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::experiment::settings::Value;
+use crate::limits::MAX_TRIALS;
 use crate::run::config_file::{ConfigFile, Entry, FileKey, MAX_BYTES};
 use crate::run::plan::MAX_SEED;
 use crate::store::bounded;
@@ -11,8 +12,6 @@ use crate::strategy::settings::STRATEGY;
 
 /// Largest number of replications of a point, and of values in a list.
 const MAX_SEEDS: i64 = 10_000;
-/// Largest number of trials of a test.
-const MAX_TEST_TRIALS: i64 = 100_000_000;
 
 /// A configuration in which some settings have several values.
 #[derive(Debug)]
@@ -114,10 +113,10 @@ impl Added {
             None if found.key == "test" && found.value.is_none() => Ok(true),
             Some(("test", "trials")) => {
                 let count = match found.value()? {
-                    Value::Whole(count @ 1..=MAX_TEST_TRIALS) => u32::try_from(count).ok(),
+                    Value::Whole(count) => u32::try_from(count).ok().filter(|count| (1..=MAX_TRIALS).contains(count)),
                     _ => None,
                 };
-                let why = format!("is not a whole number from 1 to {MAX_TEST_TRIALS}");
+                let why = format!("is not a whole number from 1 to {MAX_TRIALS}");
                 self.test_trials = Some(count.ok_or_else(|| wrong(&key(found.key), &why))?);
                 Ok(true)
             }

@@ -8,6 +8,7 @@ use crate::command::arguments::shared::{VariantArgs, WorkerArgs, whole};
 use crate::error::Error;
 use crate::evaluation::evaluate::GeneArguments;
 use crate::experiment::settings::Value;
+use crate::limits::MAX_TRIALS;
 use crate::run::experiment::Experiment;
 use crate::run::plan::{MAX_SEED, Plan};
 
@@ -78,7 +79,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, conflicts_with_all = ["genes", "genes_file", "trials", "json"])]
     pub(crate) stdin: bool,
     /// Random trials
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole(1_u32..=100_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole(1..=MAX_TRIALS))]
     pub(crate) trials: u32,
     /// The seed, as in a test (with --stdin as in a run)
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(0..=MAX_SEED))]

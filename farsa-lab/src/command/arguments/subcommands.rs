@@ -17,6 +17,7 @@ use crate::error::Error;
 use crate::evaluation::protocols::selected_cases::CaseSelection;
 use crate::evaluation::protocols::sheet::DrawRequest;
 use crate::evaluation::replay::{Selection, TrialSelector};
+use crate::limits::MAX_TRIALS;
 use crate::report::outcome::Success;
 use crate::run::plan::MAX_SEED;
 
@@ -152,7 +153,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "G", requires = "replications", conflicts_with = "replication", hide = true, value_parser = whole(1..=u32::MAX))]
     pub(crate) groups: Option<u32>,
     /// Test each champion in N trials, as `test` does
-    #[arg(long, value_name = "N", value_parser = whole(1_u32..=100_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MAX_TRIALS))]
     pub(crate) test: Option<u32>,
     /// Read settings from a TOML file (--set takes precedence)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -201,7 +202,7 @@ pub(crate) struct TestArgs {
     #[arg(value_hint = ValueHint::DirPath)]
     pub(crate) directory: PathBuf,
     /// Trials, or trials of each case of a protocol [default: 100, or the protocol's number]
-    #[arg(long, value_name = "N", value_parser = whole(1_u32..=100_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MAX_TRIALS))]
     pub(crate) trials: Option<u32>,
     /// Test every case of a test protocol, see `info`
     #[arg(long, value_name = "NAME")]

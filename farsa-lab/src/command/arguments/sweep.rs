@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueHint};
 
 use crate::command::arguments::shared::{WorkerArgs, whole};
+use crate::limits::MAX_TRIALS;
 use crate::sweep::work::Selection;
 
 #[derive(Args)]
@@ -19,7 +20,7 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "K", value_parser = whole(1..=u32::MAX))]
     replication: Option<u32>,
     /// Test each champion in N trials [default: test.trials of the file, or none]
-    #[arg(long, value_name = "N", value_parser = whole(1_u32..=100_000_000))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=MAX_TRIALS))]
     pub(crate) test: Option<u32>,
     /// Check and list all points with their finished runs, without starting any
     #[arg(long)]

@@ -12,8 +12,9 @@ use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::protocols::selected_cases::{CaseSelection, CaseTrials};
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
 use crate::evaluation::test::Subject;
-use crate::evaluation::trials::{came_to, facts, fitness, scored, success, why_failed};
+use crate::evaluation::trials::{came_to, facts, fitness, success, why_failed};
 use crate::experiment::outcome::Outcome;
+use crate::figures::significant::scored;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
