@@ -11,6 +11,19 @@ use crate::check::source::Source;
 /// Greatest depth of a contact at the start [m].
 const DEEPEST: f32 = 1e-3;
 
+/// Overlapped thing.
+#[derive(Clone, Copy)]
+enum Obstacle {
+    Wall,
+    Body(BodyId),
+}
+
+impl Obstacle {
+    fn body(self) -> Option<BodyId> {
+        if let Self::Body(body) = self { Some(body) } else { None }
+    }
+}
+
 /// Refuses a start of one of the trials with a robot or a block inside another thing or a wall.
 ///
 /// The world refuses cylinders inside walls when it is built.
@@ -32,8 +45,8 @@ pub(crate) fn check_start<W: PlanarWorld>(
         for (body, overlap) in robots.chain(blocks) {
             let Some(other) = overlap else { continue };
             let name = |body| scene.name_of(body).unwrap_or("robot");
-            let path = episode.path_of([Some(body), other].into_iter().flatten(), name(body));
-            let other = other.map_or_else(|| "a wall".into(), |other| format!("`{}`", name(other)));
+            let path = episode.path_of([Some(body), other.body()].into_iter().flatten(), name(body));
+            let other = other.body().map_or_else(|| "a wall".into(), |other| format!("`{}`", name(other)));
             return Err(
                 source.wrong(&path, format!("`{}` is inside {other} at the start of trial {trial}", name(body)))
             );
@@ -42,16 +55,16 @@ pub(crate) fn check_start<W: PlanarWorld>(
     Ok(())
 }
 
-/// Returns what a robot overlaps, if anything. A wall is `None`.
-fn inside_disc<W: PlanarWorld>(world: &W, body: BodyId, radius: f32) -> Option<Option<BodyId>> {
+/// Returns what a robot overlaps, if anything.
+fn inside_disc<W: PlanarWorld>(world: &W, body: BodyId, radius: f32) -> Option<Obstacle> {
     let [x, y, _] = world.pose(body).position;
     overlapping(world, body, [x, y], radius, |near| near.distance < radius - DEEPEST)
 }
 
-/// Returns what a box with these sides overlaps, if anything. A wall is `None`.
+/// Returns what a box with these sides overlaps, if anything.
 ///
 /// From its center, corners and edges, the nearest point of another surface is sought inside it.
-fn inside_box<W: PlanarWorld>(world: &W, body: BodyId, size: [f64; 2]) -> Option<Option<BodyId>> {
+fn inside_box<W: PlanarWorld>(world: &W, body: BodyId, size: [f64; 2]) -> Option<Obstacle> {
     let pose = world.pose(body);
     let ([x, y, _], (sine, cosine)) = (pose.position, sin_cos(pose.heading()));
     let [a, b] = size.map(|side| Scalar::max(0.5 * side as f32 - DEEPEST, 0.0));
@@ -68,18 +81,18 @@ fn inside_box<W: PlanarWorld>(world: &W, body: BodyId, size: [f64; 2]) -> Option
         .find_map(|from| overlapping(world, body, from, reach, |near| near.distance <= 0.0 || is_inside(near.point)))
 }
 
-/// Returns the first other body near a point that satisfies a test. A wall is `None`.
+/// Returns the first other body near a point that satisfies a test.
 fn overlapping<W: PlanarWorld>(
     world: &W,
     body: BodyId,
     from: [f32; 2],
     range: f32,
     overlaps: impl Fn(&NearbySurface<BodyId>) -> bool,
-) -> Option<Option<BodyId>> {
+) -> Option<Obstacle> {
     let mut first = None;
     world.query_near(from, range, &mut |near| {
         if first.is_none() && near.body != Some(body) && overlaps(&near) {
-            first = Some(near.body);
+            first = Some(near.body.map_or(Obstacle::Wall, Obstacle::Body));
         }
     });
     first
