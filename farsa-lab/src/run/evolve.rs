@@ -23,7 +23,7 @@ use crate::run::summary::{Summary, Winner};
 use crate::shell::{quoted, resume_command};
 use crate::store::append_log::Mark;
 use crate::store::directory::Directory;
-use crate::store::failures::{self, FailedEvaluation};
+use crate::store::failures::FailedEvaluation;
 use crate::store::identity::Identity;
 use crate::store::lineage::{Lineage, rows};
 use crate::store::lock::Lock;
@@ -93,7 +93,7 @@ pub(crate) fn continue_locked(
         ended
     })?;
     drop(progress);
-    run.summary()
+    Ok(run.summary())
 }
 
 /// A run in progress.
@@ -114,6 +114,8 @@ struct Run<'d> {
     curves: LogCurves,
     /// Number of evaluations that failed in this process, and the first of them.
     failed: (u64, Option<FailedEvaluation>),
+    /// Number of failed evaluations in all finished generations.
+    failures: u64,
     /// `None` for a strategy without an archive or front.
     collection: Option<CollectionTable>,
     manifest: Manifest,
@@ -152,6 +154,7 @@ impl<'d> Run<'d> {
             search_state,
             files,
             failed: (0, None),
+            failures: run_record.failed(),
             manifest,
             champions,
             started: Instant::now(),
@@ -201,6 +204,7 @@ impl<'d> Run<'d> {
         self.files.record.append(&self.record, &line, search, self.search_state.observed.as_ref())?;
         self.files.log.append(&line)?;
         self.curves.push(&line);
+        self.failures = self.failures.saturating_add(line.failed);
         self.files.failures.append(&failed, self.program)?;
         self.files.diagnostics.append(search)?;
         if let Some(lineage) = &mut self.files.lineage {
@@ -265,25 +269,25 @@ impl<'d> Run<'d> {
         replace(&directory.plot(), self.curves.draw(&self.title, &self.names).as_bytes())
     }
 
-    fn summary(&self) -> Result<Summary, Error> {
+    fn summary(&self) -> Summary {
         let Identity { experiment, condition, seed, .. } = self.identity.clone();
         let session = self.manifest.sessions.last();
         let champions: Vec<Winner> =
             self.champions.iter().flat_map(|all| Winner::from_champions(all, &self.names)).collect();
-        Ok(Summary {
+        Summary {
             directory: self.directory.path().into(),
             experiment,
             condition,
             seed,
             generations: self.search_state.search.generation(),
             evaluations: session.map_or(0, |session| session.evaluations),
-            failed: failures::count(&self.directory.failures())?,
+            failed: self.failures,
             test: None,
             combined: self.combined.clone(),
             seconds: session.map_or(0.0, |session| session.seconds),
             champion: champions.first().cloned(),
             champions: if champions.len() > 1 { champions } else { Vec::new() },
-        })
+        }
     }
 }
 
@@ -299,6 +303,7 @@ mod tests {
     use crate::experiment::settings::{Setting, Settings, Value};
     use crate::run::begin::create;
     use crate::run::experiment::Experiment;
+    use crate::run::queue::Work;
     use crate::store::directory::Directory;
     use crate::strategy::settings::{GENERATIONS, POPULATION};
     use farsa_body::Recorder;
@@ -372,7 +377,7 @@ mod tests {
         let careless = Toy { version: 1, panics: true };
         let plan = Plan::new(&careless, None, "").unwrap();
         let directory = create(&plan, &root.join("run")).unwrap();
-        finish(careless, &directory).unwrap();
+        let summary = finish(careless, &directory).unwrap();
         let log = fs::read_to_string(directory.log()).unwrap();
         assert_eq!(log.lines().count(), 5);
         assert!(!log.contains("inf"), "{log}");
@@ -384,7 +389,13 @@ mod tests {
         // The log counts each failure once.
         let counted: u64 =
             log.lines().skip(1).map(|line| line.split(',').nth(5).unwrap().parse::<u64>().unwrap()).sum();
-        assert_eq!(failures.lines().count() as u64 - 1, counted);
+        assert_eq!([failures.lines().count() as u64 - 1, summary.failed], [counted; 2]);
+        // Remarks by the user and a removed file change no number.
+        fs::write(directory.failures(), failures + "mine\n").unwrap();
+        assert_eq!(finish(careless, &directory).unwrap().failed, counted);
+        fs::remove_file(directory.failures()).unwrap();
+        let Work::Done(summary) = Work::of_run(&plan, directory.path()).unwrap() else { panic!("a finished run") };
+        assert_eq!(summary.failed, counted);
         let which = Selection { generation: Some(2), individual: Some(3), trial: TrialSelector::Number(0) };
         let error = replay(&plan, &directory, which, None, || Ok(Vec::new())).unwrap_err();
         assert_eq!(error.to_string(), "trial 0 of individual 3 of generation 2 panicked");

@@ -12,11 +12,12 @@ use crate::run::evolve;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
 use crate::run::progress::{ProgressOptions, Study};
+use crate::run::record_file::RunRecord;
 use crate::run::records::{Champions, Checkpoint};
 use crate::run::summary::{Summary, Winner, finished_already};
 use crate::shell::again;
 use crate::store::directory::{Directory, vacant};
-use crate::store::failures;
+use crate::store::identity::Identity;
 use crate::store::lock::Lock;
 
 /// One of the runs.
@@ -205,7 +206,8 @@ impl Work {
             },
         };
         let file = directory.checkpoint();
-        let Checkpoint { identity, generation: done, .. } = Checkpoint::read(plan, &directory)?;
+        let checkpoint = Checkpoint::read(plan, &directory)?;
+        let (identity, done) = (&checkpoint.identity, checkpoint.generation);
         identity.same_values(&plan.identity()?, &file)?;
         if done < asked {
             return Ok(Self::Left { generations: asked - done });
@@ -216,14 +218,16 @@ impl Work {
         let champions = Champions::read(plan, &directory)?;
         let names = if champions.best.len() > 1 { plan.evaluator()?.info().populations } else { Vec::new() };
         let champions = Winner::from_champions(&champions, &names);
+        let failed = RunRecord::read(plan, &directory, &checkpoint)?.failed();
+        let Identity { experiment, condition, seed, .. } = checkpoint.identity;
         Ok(Self::Done(Box::new(Summary {
             directory: path.into(),
-            experiment: identity.experiment,
-            condition: identity.condition,
-            seed: identity.seed,
+            experiment,
+            condition,
+            seed,
             generations: done,
             evaluations: 0,
-            failed: failures::count(&directory.failures())?,
+            failed,
             seconds: 0.0,
             test: None,
             combined: String::new(),

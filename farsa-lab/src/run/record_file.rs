@@ -126,6 +126,11 @@ impl RunRecord {
         Ok(Self { identity, record, lines, keeps_champion, observed, diagnostics, longest, content })
     }
 
+    /// Counts the failed evaluations of all generations.
+    pub(crate) fn failed(&self) -> u64 {
+        self.lines.iter().map(|line| line.failed).fold(0, u64::saturating_add)
+    }
+
     /// Returns the generation of the run's champion, the first one of equal fitness. The result is `None` before the first
     /// generation.
     pub(crate) fn champion(&self) -> Option<u32> {

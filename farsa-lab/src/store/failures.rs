@@ -1,7 +1,5 @@
 //! `failures.csv`: the failed evaluations, each with its first failed trial, the reason, and a command that repeats it.
 
-use std::fs::File;
-use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
@@ -43,19 +41,6 @@ impl FailedEvaluation {
         };
         format!("{generation},{individual},{trial},{},{}\n", quoted(why), quoted(&self.command(program, ".")))
     }
-}
-
-/// Counts the failed evaluations in the file of a run, 0 without a file.
-///
-/// # Errors
-/// [`Error::Io`].
-pub(crate) fn count(path: &Path) -> Result<u64, Error> {
-    if !path.is_file() {
-        return Ok(0);
-    }
-    let file = BufReader::new(File::open(path).map_err(Error::io("read", path))?);
-    let lines = file.split(b'\n').try_fold(0_u64, |lines, line| line.map(|_| lines + 1));
-    lines.map(|lines| lines.saturating_sub(1)).map_err(Error::io("read", path))
 }
 
 /// Creates the file with its content and the limit on its bytes.
@@ -134,7 +119,6 @@ mod tests {
         let mark = failures.sync().unwrap();
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.starts_with(HEADER) && text.lines().count() == 3);
-        assert_eq!((count(&path).unwrap(), count(&folder.path().join("none")).unwrap()), (2, 0));
         failures.append(&[failed(2, None)], "farsa").unwrap();
         drop(failures);
         let mut failures = Failures::resume(&path, mark).unwrap();
