@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn many_values_have_the_p_of_scipy() {
-        for case in fixture("mann_whitney") {
+        for case in fixture("mann_whitney").into_iter().chain(fixture("mann_whitney_ties")) {
             let values = |name: &str| case[name].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
             let (first, second): (Vec<f64>, Vec<f64>) = (values("first"), values("second"));
             let comparison = compare(&first, &second).unwrap();

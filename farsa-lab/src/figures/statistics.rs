@@ -44,6 +44,19 @@ pub(crate) fn median(values: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::fixture::fixture;
+
+    #[test]
+    fn quartiles_are_those_of_numpy() {
+        for case in fixture("quartiles") {
+            let values: Vec<f64> = case["values"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+            let Quartiles { lower, median, upper } = Quartiles::from_values(&values).unwrap();
+            for (name, found) in [("lower", lower), ("median", median), ("upper", upper)] {
+                let expected = case[name].as_f64().unwrap();
+                assert!((found - expected).abs() <= 1e-15, "{name} of {values:?}: {found} where NumPy has {expected}");
+            }
+        }
+    }
 
     #[test]
     fn quartiles_are_those_computed_by_hand() {
