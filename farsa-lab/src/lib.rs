@@ -6,6 +6,8 @@
 
 pub mod advanced;
 #[cfg(feature = "command")]
+mod archive;
+#[cfg(feature = "command")]
 mod command;
 mod error;
 mod escaped;

@@ -1,5 +1,6 @@
 //! The `farsa` command, end to end: over the reference experiments and over those of a crate outside the workspace.
 
+mod archive;
 mod attack;
 mod bad_input;
 mod broken_down;

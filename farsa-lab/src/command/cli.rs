@@ -12,7 +12,7 @@ use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::subcommands::{
     BenchArgs, Cli, Command, CompletionsArgs, InfoArgs, ListArgs, ManArgs, RunArgs, TestArgs,
 };
-use crate::command::arguments::sweep::SweepArgs;
+use crate::command::champion_test::Tests;
 use crate::command::interrupt::{INTERRUPTED, START_AGAIN, stop_on_signals, under_scheduler};
 use crate::command::invocation::Invocation;
 use crate::command::on_ranks::{Part, awaits_orders};
@@ -43,8 +43,6 @@ use crate::shell::resume_command;
 use crate::store::directory::Directory;
 use crate::store::replace::create_results;
 use crate::strategy::settings::{GENERATIONS, POPULATION};
-use crate::sweep::SweepFile;
-use crate::sweep::work::{self, Sweep};
 
 /// Runs the command with the arguments of the process over these experiments, as a complete `main`.
 ///
@@ -176,7 +174,7 @@ impl<'e> Invocation<'e, '_> {
                     Some(groups) => self.replicate_in_groups(&args, count, groups)?,
                 };
                 let Some(mut summary) = summary else { return Ok(()) };
-                self.test_champions(summary.summaries(), args.test, &args.workers)?;
+                self.test_champions(summary.summaries(), Tests::of_champions(args.test), &args.workers)?;
                 self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Run(args) => {
@@ -184,10 +182,7 @@ impl<'e> Invocation<'e, '_> {
                 let text = format!("{}\n{}", summary.text(), next::after_run(&summary, &plan));
                 self.summary(args.json, &text, &|| pretty(&summary))
             }
-            Command::Sweep(args) => {
-                let summary = self.sweep(&args)?;
-                self.summary(args.json, &summary.text(), &|| pretty(&summary))
-            }
+            Command::Sweep(args) => self.sweep(&args),
             Command::Merge(args) => self.merge(&args),
             Command::Test(args) => self.test(args),
             Command::Evaluate(args) => {
@@ -328,20 +323,6 @@ impl<'e> Invocation<'e, '_> {
         replications::run(&plan, which, &root, &pool, stop_on_signals, self.program, self.quiet)
     }
 
-    /// Makes or lists the runs of all points of a sweep.
-    fn sweep(&self, args: &SweepArgs) -> Result<work::Found, Error> {
-        let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
-        let sweep = Sweep::new(&file, self.laboratory, &root)?;
-        let ready = |plan: &Plan<'e>| args.workers.check(plan);
-        if args.list {
-            return sweep.list(which, &ready);
-        }
-        let pool = |plan: &Plan<'e>| args.workers.pool(plan);
-        let mut found = sweep.work(which, &ready, &pool, stop_on_signals, (self.program, self.quiet))?;
-        self.test_champions(found.summaries(), args.test.or(file.test_trials), &args.workers)?;
-        Ok(found)
-    }
-
     fn start_or_resume(&self, args: &RunArgs) -> Result<(Summary, Plan<'e>), Error> {
         let file = args.config.as_deref().map(ConfigFile::read).transpose()?;
         let (directory, plan) = self.planned(args, file.as_ref())?;
@@ -358,7 +339,7 @@ impl<'e> Invocation<'e, '_> {
         };
         let summary = evolve::continue_run(&plan, &directory, pool, stop_on_signals(), self.program, self.quiet);
         let summary = summary.and_then(|mut summary| {
-            self.test_champions(std::iter::once(&mut summary), args.test, &args.workers)?;
+            self.test_run(&mut summary, Tests::of_champions(args.test), &args.workers)?;
             Ok(summary)
         });
         let summary = summary.map_err(|error| match error {

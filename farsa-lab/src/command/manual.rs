@@ -89,7 +89,14 @@ fn subcommand_examples(program: &str, experiment: &str, run: &str, other: &str) 
                 format!("run {experiment} --strategy cma-es --seed 3"),
             ],
         ),
-        ("sweep", vec!["sweep friction.toml --list".into(), "sweep friction.toml --point 3".into()]),
+        (
+            "sweep",
+            vec![
+                "sweep friction.toml --list".into(),
+                "sweep friction.toml --point 3".into(),
+                "sweep friction.toml --archive friction.farsa".into(),
+            ],
+        ),
         ("merge", vec!["merge runs > runs.csv".into(), "merge node1/runs node2/runs --out runs --csv runs.csv".into()]),
         ("strategies", vec!["strategies".into(), "strategies cma-es".into()]),
         (

@@ -39,3 +39,5 @@ mod reference;
 mod replay;
 /// `farsa strategies`.
 mod strategies;
+/// `farsa sweep`.
+mod sweep;

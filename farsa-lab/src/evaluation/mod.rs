@@ -9,6 +9,9 @@ pub(crate) mod evaluate;
 /// Summary of the trials of a test.
 #[cfg(feature = "command")]
 pub(crate) mod findings;
+/// `test-generations.csv`: the best of every n-th generation on fresh starts.
+#[cfg(feature = "command")]
+pub(crate) mod generations;
 /// External genotypes: `.gen` files of the 2013 program, and plain lists of genes.
 pub(crate) mod genotypes;
 /// `farsa import`: genotypes of the 2013 program as a directory for tests, replays and pictures.

@@ -83,6 +83,8 @@ pub(crate) fn repeated(
 
 /// Trials of a test where no number is asked for.
 pub(crate) const TRIALS: usize = 100;
+/// Seed of the tests of `farsa run` and `farsa sweep`, the default one of `farsa test`.
+pub(crate) const TEST_SEED: u64 = 1;
 
 /// Most lines that a terminal shows, and the lines of a longer table.
 const MAX_SHOWN: usize = 200;

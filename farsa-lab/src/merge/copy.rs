@@ -5,6 +5,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::archive::restore;
 use crate::error::Error;
 use crate::merge::gather::{Gathered, same_version};
 use crate::run::laboratory::Laboratory;
@@ -36,7 +37,7 @@ impl<'r, 'e> Copy<'r, 'e> {
         let mut names: BTreeMap<&Path, &Gathered<'_>> = BTreeMap::new();
         let copies = runs.map(|run| {
             if let Some(first) = names.insert(&run.name, run) {
-                let [first, second] = [first, run].map(|run| run.directory.path().display().to_string());
+                let [first, second] = [first, run].map(|run| run.place.display().to_string());
                 let name = run.name.display();
                 return Err(Error::Usage(format!("{first} and {second} are different runs of one name, {name}")));
             }
@@ -57,6 +58,9 @@ impl<'r, 'e> Copy<'r, 'e> {
             // The marks of the checkpoint remain valid while the other files grow.
             copy_file(&self.run.directory.checkpoint(), &draft.checkpoint())?;
             copy_folder(from, draft.path(), 0)?;
+            if self.run.is_archived() {
+                restore(&self.run.plan, draft)?;
+            }
             let copy = Gathered::read(laboratory, draft.clone(), self.run.name.clone())?;
             if copy.lines == self.run.lines { Ok(()) } else { Err(changed(from)) }
         })
@@ -77,7 +81,7 @@ fn is_there(run: &Gathered<'_>, to: &Path, laboratory: &Laboratory<'_>) -> Resul
     if there.lines == run.lines {
         return Ok(true);
     }
-    let (found, other, from) = (there.lines.len(), run.lines.len(), run.directory.path().display());
+    let (found, other, from) = (there.lines.len(), run.lines.len(), run.place.display());
     Err(Error::Usage(format!("{}: holds {found} generations of the run that has {other} in {from}", to.display())))
 }
 

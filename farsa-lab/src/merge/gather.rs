@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tempfile::TempDir;
+
+use crate::archive::Archive;
 use crate::error::Error;
 use crate::run::config_file::ConfigFile;
 use crate::run::laboratory::Laboratory;
@@ -22,6 +25,8 @@ pub(crate) struct Gathered<'e> {
     pub(crate) directory: Directory,
     /// Its path below the named directory.
     pub(crate) name: PathBuf,
+    /// Its path for messages: that of the directory, or below an archive.
+    pub(crate) place: PathBuf,
     pub(crate) plan: Plan<'e>,
     pub(crate) identity: Identity,
     /// Lines of the finished generations.
@@ -35,6 +40,8 @@ pub(crate) struct Gathering<'e> {
     pub(crate) runs: Vec<Gathered<'e>>,
     /// Skipped directory, and that of the same run with at least as many generations.
     pub(crate) twins: Vec<[PathBuf; 2]>,
+    /// Runs of archives, removed with this value.
+    unpacked: Vec<TempDir>,
 }
 
 impl<'e> Gathered<'e> {
@@ -47,11 +54,17 @@ impl<'e> Gathered<'e> {
         let RunRecord { identity, lines, .. } =
             RunRecord::read(&plan, &directory, &Checkpoint::read(&plan, &directory)?)?;
         let asked = plan.generations()? as usize;
-        Ok(Self { directory, name, plan, identity, lines, asked })
+        let place = directory.path().to_path_buf();
+        Ok(Self { directory, name, place, plan, identity, lines, asked })
     }
 
     pub(crate) fn is_finished(&self) -> bool {
         self.lines.len() >= self.asked
+    }
+
+    /// Returns true for a run from an archive.
+    pub(crate) fn is_archived(&self) -> bool {
+        self.place != self.directory.path()
     }
 
     /// Finds the first generation in which two runs of one configuration and seed differ. They never should.
@@ -61,13 +74,13 @@ impl<'e> Gathered<'e> {
 }
 
 impl<'e> Gathering<'e> {
-    /// Finds and reads the runs in and below directories.
+    /// Finds and reads the runs in and below directories, and in archives.
     ///
     /// # Errors
     /// [`Error::File`] for a directory without a run, [`Error::Other`] for runs of one experiment with other versions of the
     /// values, and for one run with two results. Also the errors of [`Gathered::read`].
     pub(crate) fn new(laboratory: &Laboratory<'e>, roots: &[PathBuf]) -> Result<Self, Error> {
-        let mut gathering = Self { runs: Vec::new(), twins: Vec::new() };
+        let mut gathering = Self { runs: Vec::new(), twins: Vec::new(), unpacked: Vec::new() };
         let mut known: BTreeMap<String, usize> = BTreeMap::new();
         let mut seen: Vec<PathBuf> = Vec::new();
         for root in roots {
@@ -76,6 +89,10 @@ impl<'e> Gathering<'e> {
                 return Err(Error::Usage(format!("{}: is named twice", root.display())));
             }
             seen.push(real);
+            if root.is_file() {
+                gathering.add_archive(laboratory, root, &mut known)?;
+                continue;
+            }
             let mut found = Vec::new();
             find(root, Path::new(""), 0, &mut found)?;
             if found.is_empty() {
@@ -92,6 +109,25 @@ impl<'e> Gathering<'e> {
         Ok(gathering)
     }
 
+    /// Adds the runs of an archive.
+    fn add_archive(
+        &mut self,
+        laboratory: &Laboratory<'e>,
+        path: &Path,
+        known: &mut BTreeMap<String, usize>,
+    ) -> Result<(), Error> {
+        let archive = Archive::read(path)?;
+        let folder = tempfile::tempdir().map_err(|error| Error::io("make", &std::env::temp_dir())(error))?;
+        archive.unpack(folder.path())?;
+        for name in archive.runs.keys() {
+            let directory = Directory::open(&folder.path().join(name))?;
+            let run = Gathered::read(laboratory, directory, name.into())?;
+            self.add(Gathered { place: path.join(name), ..run }, known)?;
+        }
+        self.unpacked.push(folder);
+        Ok(())
+    }
+
     /// Adds a run, or skips the shorter of two equal runs. `known` has the places of the added runs.
     fn add(&mut self, run: Gathered<'e>, known: &mut BTreeMap<String, usize>) -> Result<(), Error> {
         // Runs differ by their settings and by the content of files, not by their length.
@@ -103,7 +139,7 @@ impl<'e> Gathering<'e> {
             return Ok(());
         };
         same_version(first, &run)?;
-        let path = |run: &Gathered<'_>| run.directory.path().to_path_buf();
+        let path = |run: &Gathered<'_>| run.place.clone();
         if let Some(generation) = first.differs_from(&run) {
             let [first, second] = [path(first), path(&run)];
             return Err(Error::Other(format!(
@@ -127,7 +163,7 @@ pub(crate) fn same_version(first: &Gathered<'_>, second: &Gathered<'_>) -> Resul
     if a == b {
         return Ok(());
     }
-    let paths = [first, second].map(|run| run.directory.path().display());
+    let paths = [first, second].map(|run| run.place.display());
     let (what, a, b) = if a[0] == b[0] {
         (format!("the values of {}", first.identity.experiment), a[1], b[1])
     } else {

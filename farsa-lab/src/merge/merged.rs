@@ -65,7 +65,7 @@ impl Merge<'_> {
             let (csv, curves) = (csv.display(), curves.display());
             return Err(Error::Usage(format!("--csv {csv} and --curves {curves}: two tables need two files")));
         }
-        let Gathering { runs, twins } = Gathering::new(laboratory, self.directories)?;
+        let Gathering { runs, twins, .. } = &Gathering::new(laboratory, self.directories)?;
         let finished = runs.iter().filter(|run| run.is_finished());
         let copies = self.out.map_or(Ok(Vec::new()), |out| Copy::all(finished, out, laboratory))?;
         let mut places = copies.iter();
@@ -73,7 +73,7 @@ impl Merge<'_> {
             .iter()
             .map(|run| {
                 let copy = if run.is_finished() { places.next() } else { None };
-                (run, copy.map_or(run.directory.path(), |copy| copy.to.as_path()))
+                (run, copy.map_or(run.place.as_path(), |copy| copy.to.as_path()))
             })
             .collect();
         let table = run_table::csv(&rows)?;
@@ -87,7 +87,7 @@ impl Merge<'_> {
         let names =
             |there: bool| copies.iter().filter(move |copy| copy.there == there).map(|copy| shown(&copy.to)).collect();
         let unfinished = runs.iter().filter(|run| !run.is_finished()).map(|run| Unfinished {
-            directory: shown(run.directory.path()),
+            directory: shown(&run.place),
             generations: run.lines.len(),
             of: run.asked,
         });

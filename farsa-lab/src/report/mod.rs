@@ -14,10 +14,14 @@ mod page;
 mod protocols;
 /// A run as a report reads it.
 mod run;
+/// Curves of the tests of every n-th generation.
+mod sampled;
 /// Section about one experiment.
 mod section;
 /// Differences, complete tables and commands of configurations.
 mod settings;
+/// Success of the champions by kind of trial.
+mod starts;
 /// Internal states on their first two principal components.
 mod states;
 /// Values that strategies report, and the archives that they keep.

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crate::error::Error;
 use crate::evaluation::findings::Findings;
+use crate::evaluation::generations::{self, SampledTest, SampledTests};
 use crate::evaluation::test::{self, Record};
 use crate::evaluation::test_table::Table;
 use crate::experiment::protocol::Protocol;
@@ -38,6 +39,8 @@ pub(crate) struct Run<'e> {
     /// Best fitness up to each generation, empty unless the champion is the best of all.
     best: Vec<f64>,
     pub(crate) test: Option<Tested>,
+    /// Tests of the best of every n-th generation.
+    pub(crate) sampled: Option<SampledTests>,
     /// Tested protocols, in the experiment's order.
     pub(crate) protocols: Vec<TestedProtocol>,
     /// Other protocols, in the same order.
@@ -69,6 +72,9 @@ impl<'e> Run<'e> {
             *best = best.max(line.row[0]);
             Some(*best)
         };
+        let is_best = |row: &SampledTest| told.record.champion(0, row.generation) == Some(row.individual as usize);
+        // Other individuals are those of an earlier run.
+        let sampled = generations::read(&directory)?.filter(|tests| tests.rows.iter().all(is_best));
         let best = told.lines.iter().filter(|_| told.keeps_champion).scan(f64::NEG_INFINITY, so_far).collect();
         let evaluator = plan.evaluator()?;
         let kept = if plan.strategy()?.collection().is_some() {
@@ -94,6 +100,7 @@ impl<'e> Run<'e> {
             kept,
             best,
             test,
+            sampled,
             protocols,
             other_protocols,
         })

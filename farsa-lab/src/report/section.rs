@@ -14,7 +14,9 @@ use crate::report::outcome::{Success, outcome};
 use crate::report::page::{Block, Figure, Table};
 use crate::report::protocols::{command_of, not_run, protocols};
 use crate::report::run::{Group, Run, duration, short, whose};
+use crate::report::sampled::sampled;
 use crate::report::settings::{command, complete, differences, shell};
+use crate::report::starts::starts;
 use crate::report::strategies::strategies;
 use crate::strategy::settings::POPULATION;
 
@@ -48,6 +50,8 @@ pub(crate) fn section(
     blocks.extend(strategies(&groups));
     blocks.push(Block::Subheading("Champions on fresh starts".into()));
     blocks.extend(tests(&groups, program)?);
+    blocks.extend(starts(&groups));
+    blocks.extend(sampled(&groups));
     blocks.extend(protocols(&groups));
     blocks.extend(not_run(&groups, program)?);
     let (mut pictures, mut others) = (Vec::new(), Vec::new());

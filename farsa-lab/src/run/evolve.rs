@@ -96,6 +96,15 @@ pub(crate) fn continue_locked(
     Ok(run.summary())
 }
 
+/// Writes the files of a run that its record determines, in a directory that its creator has locked.
+///
+/// # Errors
+/// As [`continue_run`].
+pub(crate) fn rebuild(plan: &Plan<'_>, directory: &Directory, pool: &Pool<'_>) -> Result<(), Error> {
+    let checkpoint = Checkpoint::read(plan, directory)?;
+    Run::resume(plan, directory, checkpoint, pool, "")?.save()
+}
+
 /// A run in progress.
 struct Run<'d> {
     directory: &'d Directory,

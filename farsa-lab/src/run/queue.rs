@@ -35,6 +35,8 @@ pub(crate) struct Queue<'q, 'e> {
     /// Returns the run of a number below `count`.
     pub(crate) member: &'q dyn Fn(usize) -> Result<Member<'e>, Error>,
     pub(crate) pool: &'q dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
+    /// Called with the summary of a run that this process has finished, while the run is claimed.
+    pub(crate) after: &'q dyn Fn(&mut Summary) -> Result<(), Error>,
     /// Name of this program.
     pub(crate) program: &'q str,
     pub(crate) quiet: bool,
@@ -131,7 +133,8 @@ impl Queue<'_, '_> {
         let pool = (self.pool)(&plan)?;
         let options = ProgressOptions { quiet: self.quiet, study };
         let summary = evolve::continue_locked(&lock, &plan, &directory, pool, stop, self.program, options);
-        let summary = summary.map_err(|error| match error {
+        let tested = summary.and_then(|mut summary| (self.after)(&mut summary).map(|()| summary));
+        let summary = tested.map_err(|error| match error {
             Error::Interrupted { .. } => Error::Interrupted { resume: again(self.program) },
             error => error,
         })?;

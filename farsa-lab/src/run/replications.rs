@@ -92,7 +92,7 @@ pub(crate) fn run<'e>(
         let path = root.join(plan.name());
         Ok(Member { plan, path, name: format!("replication {number} of {}", which.count) })
     };
-    let queue = Queue { count: seeds.len(), member: &member, pool, program, quiet };
+    let queue = Queue { count: seeds.len(), member: &member, pool, after: &|_| Ok(()), program, quiet };
     let left = queue.check()?;
     let states = queue.work(&left, stop())?;
     queue.tell_of_others(&states);

@@ -7,12 +7,16 @@ use std::path::{Path, PathBuf};
 use crate::error::Error;
 use crate::escaped::Quoted;
 use crate::store::bounded::read_regular_text;
+use crate::store::checksummed;
 use crate::store::lock::Lock;
 use crate::store::replace::sync_directory;
 use crate::store::temporary_file;
 
 /// Bytes of the largest configuration that is searched for the name of its experiment.
 const MAX_CONFIG_BYTES: u64 = 4_000_000;
+
+/// First bytes of an archive of runs.
+pub(crate) const ARCHIVE: [u8; 8] = *b"farsaarc";
 
 /// A run's directory.
 #[derive(Debug, Clone)]
@@ -98,6 +102,9 @@ impl Directory {
     /// [`Error::File`].
     pub(crate) fn open(path: &Path) -> Result<Self, Error> {
         let directory = Self::at(path.into());
+        if path.is_file() && checksummed::magic(path)? == Some(ARCHIVE) {
+            return Err(Error::no_run(path, "is an archive. `merge --out DIR` restores its runs"));
+        }
         if !path.is_dir() {
             let near =
                 run_named(path, Path::new("runs")).map(|run| format!("; a run of this name is {}", Quoted(&run)));
@@ -167,6 +174,10 @@ impl Directory {
     /// Gets the path of the description of the test.
     pub(crate) fn test_record(&self) -> PathBuf {
         self.path.join(format!("test{}.json", self.tests))
+    }
+    /// Gets the paths of the tests of every n-th generation, a table and its description.
+    pub(crate) fn sampled_tests(&self) -> [PathBuf; 2] {
+        ["csv", "json"].map(|end| self.path.join(format!("test-generations{}.{end}", self.tests)))
     }
     /// Gets the directory of tests by protocols.
     pub(crate) fn protocols(&self) -> PathBuf {

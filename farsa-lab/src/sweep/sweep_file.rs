@@ -1,8 +1,11 @@
 //! File of a sweep.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::error::Error;
+use crate::evaluation::generations::Sampling;
+use crate::evaluation::test::TEST_SEED;
 use crate::experiment::settings::Value;
 use crate::limits::MAX_TRIALS;
 use crate::run::config_file::{ConfigFile, Entry, FileKey, MAX_BYTES};
@@ -12,6 +15,10 @@ use crate::strategy::settings::STRATEGY;
 
 /// Largest number of replications of a point, and of values in a list.
 const MAX_SEEDS: i64 = 10_000;
+/// Keys of the table `test`.
+const TESTS: [&str; 3] = ["trials", "every", "every_trials"];
+/// Trials of the test of every n-th generation where no number is given.
+const SAMPLED_TRIALS: u32 = 20;
 
 /// A configuration in which some settings have several values.
 #[derive(Debug)]
@@ -24,6 +31,8 @@ pub(crate) struct SweepFile {
     pub(crate) seeds: Vec<u64>,
     /// Trials of the test of each champion, if there is one.
     pub(crate) test_trials: Option<u32>,
+    /// Tests of the best of every n-th generation, if there are any.
+    pub(crate) sampling: Option<Sampling>,
 }
 
 /// Keys with values that change together.
@@ -41,7 +50,8 @@ struct Added {
     list: Vec<Column>,
     replications: Option<Entry<u32>>,
     seeds: Option<Entry<Vec<u64>>>,
-    test_trials: Option<u32>,
+    /// Whole numbers of the table `test` by their names.
+    tests: BTreeMap<String, Entry<u32>>,
 }
 
 type Column = (Entry<String>, Vec<Entry<Value>>);
@@ -60,7 +70,7 @@ impl SweepFile {
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let mut added = Added::default();
         let base = ConfigFile::parse_beside(name, text, &mut |found| added.take(found))?;
-        let Added { grid, list, replications, seeds, test_trials } = added;
+        let Added { grid, list, replications, seeds, tests } = added;
         let mut axes: Vec<Axis> = Vec::new();
         for (key, values) in grid {
             let rows = values.into_iter().map(|value| vec![value]).collect();
@@ -83,7 +93,19 @@ impl SweepFile {
             }
         }
         let seeds = seeds_of(&base, replications, seeds)?;
-        Ok(Self { base, axes, seeds, test_trials })
+        let test = |key: &str| tests.get(key).map(|entry| entry.value);
+        let sampling = match (test("every"), tests.get("every_trials")) {
+            (Some(every), trials) => {
+                let trials = trials.map_or(SAMPLED_TRIALS, |entry| entry.value);
+                Some(Sampling { every, trials, seed: TEST_SEED })
+            }
+            (None, Some(Entry { place, .. })) => {
+                let key = Entry { value: "test.every_trials".to_owned(), place: place.clone() };
+                return Err(wrong(&key, "needs test.every, the generations from one test to the next"));
+            }
+            (None, None) => None,
+        };
+        Ok(Self { base, axes, seeds, test_trials: test("trials"), sampling })
     }
 }
 
@@ -111,16 +133,21 @@ impl Added {
                 Ok(true)
             }
             None if found.key == "test" && found.value.is_none() => Ok(true),
-            Some(("test", "trials")) => {
+            Some(("test", name)) => {
+                if !TESTS.contains(&name) {
+                    let known = TESTS.map(|name| format!("test.{name}"));
+                    let known = known.iter().map(String::as_str);
+                    return Err(Error::unknown(found.place, "key", &format!("test.{name}"), known));
+                }
                 let count = match found.value()? {
                     Value::Whole(count) => u32::try_from(count).ok().filter(|count| (1..=MAX_TRIALS).contains(count)),
                     _ => None,
                 };
                 let why = format!("is not a whole number from 1 to {MAX_TRIALS}");
-                self.test_trials = Some(count.ok_or_else(|| wrong(&key(found.key), &why))?);
+                let value = count.ok_or_else(|| wrong(&key(found.key), &why))?;
+                self.tests.insert(name.to_owned(), Entry { value, place: found.place.into() });
                 Ok(true)
             }
-            Some(("test", name)) => Err(Error::unknown(found.place, "key", &format!("test.{name}"), ["test.trials"])),
             Some((table @ ("grid" | "list"), name)) => {
                 let key = key(name);
                 match name {
@@ -237,7 +264,13 @@ mod tests {
         let seeds = SweepFile::parse("my.toml", "seed = [9, 2]\n[grid]\na.b = [1]\n").unwrap();
         assert_eq!((seeds.seeds, seeds.test_trials), (vec![9, 2], None));
         let tested = SweepFile::parse("my.toml", "[grid]\na.b = [1]\n[test]\ntrials = 50\n").unwrap();
-        assert_eq!((tested.base.entries.len(), tested.test_trials), (0, Some(50)));
+        assert_eq!((tested.base.entries.len(), tested.test_trials, tested.sampling), (0, Some(50), None));
+        for (line, trials) in [("", 20), ("every_trials = 7\n", 7)] {
+            let text = format!("[grid]\na.b = [1]\n[test]\nevery = 10\n{line}");
+            let tested = SweepFile::parse("my.toml", &text).unwrap();
+            let sampling = Sampling { every: 10, trials, seed: 1 };
+            assert_eq!((tested.test_trials, tested.sampling), (None, Some(sampling)));
+        }
     }
 
     #[test]

@@ -113,7 +113,15 @@ impl<'s, 'e> Sweep<'s, 'e> {
         })
     }
 
-    /// Evolves the selected and unclaimed runs one after the other.
+    /// Returns the directories of the selected runs.
+    ///
+    /// # Errors
+    /// The errors of [`work`](Self::work) about the selection.
+    pub(crate) fn directories(&self, which: Selection) -> Result<Vec<PathBuf>, Error> {
+        self.wanted(which)?.into_iter().map(|run| Ok(self.member(run)?.path)).collect()
+    }
+
+    /// Evolves the selected and unclaimed runs one after the other, and calls `after` with the summary of each.
     ///
     /// An existing directory of the same run is continued, or skipped if it is finished. All points and directories are checked
     /// before the first run starts.
@@ -126,13 +134,14 @@ impl<'s, 'e> Sweep<'s, 'e> {
         which: Selection,
         ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>,
         pool: &dyn Fn(&Plan<'e>) -> Result<Pool<'e>, Error>,
+        after: &dyn Fn(&mut Summary) -> Result<(), Error>,
         stop: impl FnOnce() -> &'static AtomicBool,
         (program, quiet): (&str, bool),
     ) -> Result<Found, Error> {
         let runs = self.wanted(which)?;
         self.check(&runs, ready)?;
         let member = |index: usize| self.member(runs[index]);
-        let queue = Queue { count: runs.len(), member: &member, pool, program, quiet };
+        let queue = Queue { count: runs.len(), member: &member, pool, after, program, quiet };
         let left = queue.check()?;
         let states = queue.work(&left, stop())?;
         queue.tell_of_others(&states);
@@ -227,6 +236,11 @@ impl Point {
 }
 
 impl Found {
+    /// Iterates over the directories of the finished runs.
+    pub(crate) fn directories(&self) -> impl Iterator<Item = &Path> {
+        self.points.iter().flat_map(|point| &point.runs).map(|run| run.directory.as_path())
+    }
+
     /// Iterates over the summaries of the runs.
     pub(crate) fn summaries(&mut self) -> impl Iterator<Item = &mut Summary> {
         self.points.iter_mut().flat_map(|point| &mut point.runs)

@@ -8,8 +8,8 @@ use crate::merge::Merge;
 
 #[derive(Args)]
 pub(crate) struct MergeArgs {
-    /// Runs, or directories that contain runs at any depth
-    #[arg(required = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    /// Runs, directories that contain runs at any depth, or archives of sweeps
+    #[arg(required = true, value_name = "DIR", value_hint = ValueHint::AnyPath)]
     directories: Vec<PathBuf>,
     /// Copy finished runs into this directory under their names, without overwriting
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]

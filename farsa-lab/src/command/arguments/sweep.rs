@@ -25,6 +25,9 @@ pub(crate) struct SweepArgs {
     /// Check and list all points with their finished runs, without starting any
     #[arg(long)]
     pub(crate) list: bool,
+    /// Archive the finished runs with their tests, for `merge` (replaces one of fewer)
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) archive: Option<PathBuf>,
     /// The parent directory of the points [default: runs/FILE without extension]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     out: Option<PathBuf>,
