@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{Running, command, content, ok, own, results, say, scratch};
+use crate::tool::{Running, command, content, farsa, ok, own, results, say, scratch};
 
 const FILE: &str = r#"
 experiment = "cart"
@@ -221,4 +221,20 @@ fn strategies_are_points_and_groups_of_a_report() {
     let md = fs::read_to_string(here.join("which.md")).expect("the page");
     assert!(md.contains("| condition | rough, cma-es | rough, truncation | rough, xnes |"), "{md}");
     assert!(md.contains("| rough, cma-es | rough, truncation | "), "{md}");
+}
+
+#[test]
+fn the_studies_of_the_repository_are_valid() {
+    let here = scratch("sweep-studies");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../studies");
+    let mut studies: Vec<_> = fs::read_dir(folder).expect("it").map(|entry| entry.expect("an entry").path()).collect();
+    studies.sort();
+    assert!(!studies.is_empty());
+    for study in studies {
+        let study = study.to_str().expect("a path");
+        let listed = json(&ok(farsa(), &here, &format!("sweep {study} --list --json")));
+        let points = listed["points"].as_array().expect("a list");
+        let runs = points.iter().map(|point| point["replications"].as_u64().expect("a number"));
+        assert!(points.len() == 2 && runs.sum::<u64>() >= 20, "{study}: {listed}");
+    }
 }
