@@ -110,14 +110,12 @@ async function liveOf(page) {
 	if (!capable) throw new Unsupported("it needs a browser with WebAssembly");
 	const {live: {module: packed, script, about: {individuals}}} = page;
 	// The best trial of the run is shown first.
-	const told = individuals.at(-1).trials;
 	// A trial that broke down has no fitness.
-	const earned = ({fitness}) => fitness ?? -Infinity;
-	const best = told.reduce((best, trial, i) => (earned(trial) > earned(told[best]) ? i : best), 0);
+	const earned = individuals.at(-1).trials.map(({fitness}) => fitness ?? -Infinity);
+	const best = max(0, earned.indexOf(max(...earned)));
 	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
-	const {agent, trial} = heldBy(momentOf(), page.live.about) ?? {};
 	// Changes in the address follow when the whole trial is shown.
-	Object.assign(state, {individual: agent ?? state.individual, trial: trial ?? state.trial});
+	Object.assign(state, heldBy(momentOf(), page.live.about, state.individual), {changes: new Map()});
 	const request = {do: "film", ...asked(state), lesion: ""};
 	const module = firstWorker("compile", {packed}).catch((error) => {
 		// A function that returns a vector.
@@ -141,12 +139,10 @@ function trialNamed(name, {trials}) {
 }
 
 // The agent, trial and changes of an address, or null if the page does not hold them.
-function heldBy({trial: name, agent, change = ""}, about) {
-	const trial = trialNamed(name, about);
-	const place = agent === undefined ? about.individuals.length - 1 : /^\d{1,9}$/.test(agent) ? +agent : NaN;
-	if (!trial || !about.individuals[place]) return null;
-	const changes = new Map(change.split(",").filter(Boolean).map((part) => [part.split("=")[0], part.split("=")[1] ?? ""]));
-	return {agent: place, trial, changes};
+function heldBy({trial: name, agent, change = ""}, about, last) {
+	const [individual, trial] = [+(agent ?? last), trialNamed(name, about)];
+	const changes = new Map(change.split(",").filter(Boolean).map((part) => [...part.split("="), ""].slice(0, 2)));
+	return trial && about.individuals[individual] ? {individual, trial, changes} : null;
 }
 
 const asked = ({individual, trial, watched}) => ({individual, trial, watched});
@@ -168,6 +164,11 @@ function compared({digests}, {stride, digests: run}) {
 	const at = run.findIndex((digest, i) => digest !== own[i]);
 	if (at < 0 && own.length === run.length) return `Equal to the run, bit by bit: ${digests.length} ticks, digest ${digests.at(-1).toString(16).padStart(8, "0")}`;
 	return `Differs from the run within ${stride} ticks from tick ${max(0, (at < 0 ? run.length : at)*stride)}`;
+}
+
+function verdictOf({fresh, number}, {trials}, answer) {
+	if (fresh) return "A fresh start is no trial of the run";
+	return trials[number] ? compared(answer, trials[number]) : "The run has no trial of an individual of this page";
 }
 
 const NONE = "a node or link of the network";
@@ -283,18 +284,16 @@ function tellControls(own, state, about) {
 
 // Names the agent, the trial and the changes in the address, but no moved or pushed bodies.
 function addressed(player, state, about, change) {
-	const evolved = about.individuals.length - 1;
-	const address = () => {
-		const trial = state.trial.fresh ? `fresh-${state.trial.fresh.number}` : `${state.trial.number}`;
-		return {...state.individual === evolved ? {} : {agent: state.individual}, trial, ...state.changes.size ? {change: listOf(state)} : {}};
-	};
-	Object.defineProperty(player, "address", {get: address});
-	player.choose = async ({trial, agent = `${evolved}`, change: list}) => {
-		const found = heldBy({trial, agent, change: list}, about);
-		const asked = found && {individual: found.agent, trial: found.trial, changes: found.changes};
-		const before = JSON.stringify(address());
-		if (found && JSON.stringify({...agent === `${evolved}` ? {} : {agent: +agent}, trial, ...list ? {change: list} : {}}) !== before) await change(asked);
-		return !!found;
+	const last = about.individuals.length - 1;
+	const keyOf = ({individual, trial, changes}) => JSON.stringify([individual, trial, [...changes]]);
+	Object.defineProperty(player, "address", {get() {
+		const {individual: agent, trial: {fresh, number}} = state;
+		return {...agent === last ? {} : {agent}, trial: fresh ? `fresh-${fresh.number}` : number, ...state.changes.size ? {change: listOf(state)} : {}};
+	}});
+	player.choose = async (moment) => {
+		const held = heldBy(moment, about, last);
+		if (held && keyOf(held) !== keyOf(state)) await change(held);
+		return !!held;
 	};
 }
 
@@ -303,13 +302,21 @@ async function behaviorOf(count, state, about, own, change) {
 	own.behavior.disabled = true;
 	const request = {individual: state.individual, watched: state.watched, ...changesOf(state) ?? {lesion: ""}};
 	// A mark opens a trial of this summary, also after other changes.
-	const {individual, watched, changes, moves, pushes} = state;
-	const kept = {individual, watched, changes: new Map(changes), moves, pushes};
+	const kept = {...state, changes: new Map(state.changes)};
 	const open = (number) => change({...kept, changes: new Map(kept.changes), trial: {fresh: {number, seed: 1}}});
-	const {generation, name = ""} = about.individuals[individual];
+	const {generation, name = ""} = about.individuals[state.individual];
 	const whose = about.individuals[1] ? `Generation ${generation}${name}. ` : "";
 	const found = await summarized(count, request, whose, own.summary, open).catch((error) => own.summary.replaceChildren(error.message));
 	own.behavior.disabled = false;
+	return found;
+}
+
+// Runs fresh trials with the changes and without.
+async function testOf(state, own, counted) {
+	const tell = (text) => (own.earned.textContent = text);
+	own.hundred.disabled = true;
+	const found = await hundred(state.individual, changesOf(state), counted, tell).catch((error) => tell(error.message));
+	own.hundred.disabled = false;
 	return found;
 }
 
@@ -317,16 +324,21 @@ async function behaviorOf(count, state, about, own, change) {
 function attach(page, state, whole, player, open) {
 	const {about} = page.live;
 	const counted = new Map();
-	const subjectOf = () => JSON.stringify([state.individual, changesOf(state)]);
-	let [answer, turn, chosen, tested] = [null, 0, "", subjectOf()];
+	let [answer, turn, chosen] = [null, 0, ""];
 	const set = (name, to) => {
 		const before = {...state};
 		state.changes = new Map(before.changes).set(name, to);
 		return show(before);
 	};
-	const change = (what) => (Object.assign(state, what), show());
+	const change = (what) => {
+		// A count of successes belongs to one agent.
+		if (what.individual >= 0) own.earned.textContent = "";
+		Object.assign(state, what);
+		return show();
+	};
 	const undo = () => (state.changes.clear(), (state.moves = []), (state.pushes = []), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
+	const test = () => testOf(state, own, counted);
 	const own = controlsOf(page, {set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
 	const summarize = (count) => behaviorOf(count, state, about, own, change);
@@ -346,9 +358,6 @@ function attach(page, state, whole, player, open) {
 	async function show(before = {...state}) {
 		const [mine, changes, {pushes}] = [++turn, changesOf(state), state];
 		marks();
-		// A count of successes belongs to one agent and its changes.
-		if (subjectOf() !== tested) own.earned.textContent = "";
-		tested = subjectOf();
 		say("runs ...");
 		try {
 			const intact = await answerOf({do: "film", ...asked(state), lesion: ""});
@@ -378,21 +387,10 @@ function attach(page, state, whole, player, open) {
 		say("");
 	}
 
-	// Runs fresh trials with the changes and without.
-	async function test() {
-		const tell = (text) => (own.earned.textContent = text);
-		own.hundred.disabled = true;
-		const found = await hundred(state.individual, changesOf(state), counted, tell).catch((error) => tell(error.message));
-		own.hundred.disabled = false;
-		return found;
-	}
-
 	// Compares the trial with that of the run.
 	async function verify() {
-		const {fresh, number} = state.trial;
 		await whole();
-		const told = about.individuals[state.individual].trials[number];
-		const found = fresh ? "A fresh start is no trial of the run" : told ? compared(answer, told) : "The run has no trial of an individual of this page";
+		const found = verdictOf(state.trial, about.individuals[state.individual], answer);
 		say(found);
 		return found;
 	}

@@ -125,9 +125,9 @@ const momentOf = () => Object.fromEntries(new URLSearchParams(location.hash.slic
 // Shows the moment in the address. Returns false if there is none.
 async function visit(player) {
 	const moment = momentOf();
-	const {trial, agent, t} = moment;
+	const {trial, t} = moment;
 	if (!farsa.error) $("message").hidden = true;
-	if (trial !== undefined && !(await player.choose(moment))) warn(`The address names trial ${trial}${agent ? ` of agent ${agent}` : ""}, which this page does not hold.`);
+	if (trial !== undefined && !(await player.choose(moment))) warn(`The address names trial ${trial}, which this page does not hold.`);
 	else if (t !== undefined && !(+t >= 0)) warn(`The address names the time ${t}, which is no number of seconds.`);
 	else if (t !== undefined) player.go(round(player.clock.tickAt(+t)));
 	return t !== undefined;
