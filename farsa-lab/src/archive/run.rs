@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::archive::packed::Files;
 use crate::error::Error;
 use crate::experiment::lanes::LaneRequest;
+use crate::run::begin::resumed;
 use crate::run::evolve;
 use crate::run::plan::Plan;
 use crate::run::pool::Pool;
@@ -27,7 +28,7 @@ const MAX_BYTES: u64 = 1 << 30;
 pub(crate) fn pack(plan: &Plan<'_>, directory: &Directory) -> Result<Option<Files>, Error> {
     let checkpoint = Checkpoint::read(plan, directory)?;
     let content = RunRecord::content(plan, directory, &checkpoint)?;
-    RunRecord::from_content(plan, directory, &checkpoint, content.clone())?;
+    let RunRecord { record, .. } = RunRecord::from_content(plan, directory, &checkpoint, content.clone())?;
     if checkpoint.generation < plan.generations()? {
         return Ok(None);
     }
@@ -42,8 +43,12 @@ pub(crate) fn pack(plan: &Plan<'_>, directory: &Directory) -> Result<Option<File
         let path = directory.failures();
         add(&path, append_log::read(&path, checkpoint.failures, MAX_BYTES)?);
     }
-    // The state of the strategy and the lineage are rebuilt from the record.
-    let checkpoint = Checkpoint { state: None, lineage: Mark::default(), ..checkpoint };
+    // The lineage is rebuilt from the record, and so is the state of the strategy, unless the record has genomes alone.
+    let mut checkpoint = Checkpoint { lineage: Mark::default(), ..checkpoint };
+    let state = checkpoint.state.take();
+    if resumed(plan, directory, &checkpoint, &record).is_err() {
+        checkpoint.state = state;
+    }
     let path = directory.checkpoint();
     add(&path, checksummed::to_bytes(&path, &checkpoint)?);
     for path in [directory.config(), directory.manifest(), directory.champion()] {

@@ -6,7 +6,7 @@ use farsa_body::Recorder;
 use farsa_evo::Fitness;
 use farsa_view::Schema;
 
-use super::{Numbers, pool, rows, run, scratch};
+use super::{Numbers, check_archive, pool, rows, run, scratch};
 use crate::error::Error;
 use crate::evaluation::replay::{Replayable, Selection, replay};
 use crate::evaluation::test;
@@ -125,6 +125,7 @@ fn runs_the_same(numbers: &Numbers, strategy: &'static dyn StrategyDefinition) {
     let of_all: Vec<_> = of_all.iter().map(|found| (found.generation, found.individual as usize)).collect();
     assert_eq!(of_all, wanted, "{name}");
     test::test(&all, &whole, None, 6, 1, 2, LaneRequest::ONE, true).unwrap();
+    check_archive(&all, &whole);
     drop(pool(&all, 1));
     fs::remove_dir_all(root).unwrap();
 }

@@ -7,7 +7,7 @@ use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
 use super::ranks::{part, same};
-use super::{pool, scratch};
+use super::{check_archive, pool, scratch};
 use crate::error::Error;
 use crate::evaluation::test;
 use crate::experiment::episode::{Episode, EpisodeId, NoWorld};
@@ -218,5 +218,7 @@ fn a_trial_of_a_test_that_breaks_says_why() {
     let found = test::test(&plan, &directory, None, 200, 3, 2, LaneRequest::ONE, true).unwrap().text(false);
     let line = found.lines().last().unwrap();
     assert!(line.starts_with("line ") && line.contains(" of the test failed: "), "{found}");
+    assert!(directory.failures().is_file());
+    check_archive(&plan, &directory);
     fs::remove_dir_all(root).unwrap();
 }

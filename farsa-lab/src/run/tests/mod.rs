@@ -12,6 +12,7 @@ mod protocols;
 mod ranks;
 mod reference;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -21,9 +22,12 @@ use farsa_body::Recorder;
 use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
+use crate::archive::{Archive, pack, restore};
 use crate::error::Error;
+use crate::evaluation::generations::{self, Sampling};
 use crate::evaluation::replay::{ReplaySummary, Selection, replay};
 use crate::evaluation::replayed::Replayed;
+use crate::evaluation::test;
 use crate::experiment::behavior::{Behavior, NotedBehavior};
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Evaluation, Evaluator, Iteration, Learner, Task, TaskInfo};
@@ -266,6 +270,37 @@ fn lineage(directory: &Directory) -> Vec<(u32, usize, Vec<usize>)> {
 fn rows(directory: &Directory) -> Vec<Vec<f64>> {
     let log = fs::read_to_string(directory.log()).unwrap();
     log.lines().skip(1).map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect()
+}
+
+/// Checks the tests of every third generation by tests of single individuals, and that an archive restores every visible file.
+fn check_archive(plan: &Plan<'_>, directory: &Directory) {
+    let sampling = Sampling { every: 3, trials: 4, seed: 1 };
+    generations::test(&AtomicBool::new(false), plan, directory, sampling, (2, LaneRequest::ONE), true).unwrap();
+    let tests = generations::read(directory).unwrap().unwrap();
+    assert_eq!(tests.rows.len(), (plan.generations().unwrap() as usize).div_ceil(3));
+    for row in &tests.rows {
+        let which = Selection { generation: Some(row.generation), ..Selection::default() };
+        let single = test::test(plan, directory, Some(which), 4, 1, 2, LaneRequest::ONE, true).unwrap().findings;
+        let at = row.generation as usize;
+        let found = [tests.success(at), tests.fitness(at)];
+        assert_eq!(format!("{found:?}"), format!("{:?}", [single.rate, single.fitness]), "{} {at}", plan.name());
+    }
+    let files = |directory: &Path| {
+        let entries = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
+        let visible = |path: &PathBuf| !path.file_name().unwrap().to_string_lossy().starts_with('.');
+        let name = |path: PathBuf| (path.file_name().unwrap().to_owned(), fs::read(&path).unwrap());
+        entries.filter(visible).map(name).collect::<BTreeMap<_, _>>()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let runs = [("run".to_owned(), pack(plan, directory).unwrap().unwrap())].into();
+    Archive { runs }.unpack(folder.path()).unwrap();
+    let restored = Directory::open(&folder.path().join("run")).unwrap();
+    restore(plan, &restored).unwrap();
+    let [expected, found] = [directory, &restored].map(|directory| files(directory.path()));
+    assert!(found.keys().eq(expected.keys()), "{:?} instead of {:?}", found.keys(), expected.keys());
+    for (name, bytes) in &expected {
+        assert!(found[name] == *bytes, "{}: {}", plan.name(), name.display());
+    }
 }
 
 fn replayed(plan: &Plan<'_>, directory: &Directory, which: Selection) -> (String, Replayed<ReplaySummary>) {

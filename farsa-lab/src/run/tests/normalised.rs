@@ -11,7 +11,7 @@ use farsa_num::{Domain, Stream};
 use farsa_view::Schema;
 
 use super::ranks::{part, same};
-use super::{pool, rows, run, scratch};
+use super::{check_archive, pool, rows, run, scratch};
 use crate::advanced::RunDirectory;
 use crate::error::Error;
 use crate::evaluation::replay::{Selection, replay};
@@ -220,6 +220,7 @@ fn the_champion_is_tested_with_the_normalisation_of_its_generation() {
     let directory = create(&plan, &root).unwrap();
     run(&plan, &directory, 2);
     test::test(&plan, &directory, None, 5, 1, 2, LaneRequest::ONE, true).unwrap();
+    check_archive(&plan, &directory);
     let text = fs::read_to_string(directory.test()).unwrap();
     let found: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(4).unwrap().parse().unwrap()).collect();
     let best = RunDirectory::open(&root, &Laboratory::new(&[&SCALES])).unwrap().champion().unwrap();
