@@ -29,7 +29,7 @@ impl Experiment for ReachGraspLift {
     }
 
     fn summary(&self) -> &'static str {
-        "an arm and hand learns to reach, grasp and lift a sphere, with or without labels that name the phase"
+        "an arm and hand learn to reach, grasp and lift a sphere, with or without labels that name the phase"
     }
 
     fn conditions(&self) -> &'static [&'static str] {

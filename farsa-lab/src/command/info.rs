@@ -225,7 +225,7 @@ pub(crate) fn as_text(plan: &Plan<'_>) -> Result<String, Error> {
         };
         let _ = writeln!(text, "  {kind:width$}  {names}");
     }
-    let _ = writeln!(text, "\nsettings:");
+    let _ = writeln!(text, "\nsettings (given by the source, derived from it, or chosen here):");
     for (setting, info) in plan.settings.table().iter().zip(&info.settings) {
         text.push_str(&info.text(setting));
     }
