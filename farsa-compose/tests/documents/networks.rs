@@ -413,3 +413,32 @@ fn parameters_are_named_by_kind_and_number() {
         assert_eq!(found, wanted, "{network}");
     }
 }
+
+/// Eight inputs, two neurons and two outputs: rows of weights from one source each, then biases and leaks.
+#[test]
+fn parameters_of_leaky_networks_are_named_by_their_ends() {
+    let made = evaluator("[network]\nkind = \"leaky\"\nhidden = 2\nweights = [-3.0, 3.5]\nleaks = [0.25, 0.75]\n");
+    let ends = |from: &[String], to: &[String]| {
+        let row = |from: &String| to.iter().map(|to| format!("weight of {from} on {to}")).collect::<Vec<_>>();
+        from.iter().flat_map(row).collect::<Vec<_>>()
+    };
+    let numbered = |name: &str, count: usize| (1..=count).map(|n| format!("{name} {n}")).collect::<Vec<_>>();
+    let (inputs, neurons) = (numbered("infrared", 8), numbered("neuron", 2));
+    let outputs = ["wheels left", "wheels right"].map(str::to_owned);
+    let wanted = [
+        ends(&inputs, &neurons),
+        ends(&neurons, &neurons),
+        ends(&neurons, &outputs),
+        numbered("bias of neuron", 2),
+        numbered("leak of neuron", 2),
+    ];
+    let (mut found, mut wanted) = (names(made.as_ref()), wanted.concat());
+    // The order of kinds is that of the network's crate.
+    found.sort();
+    wanted.sort();
+    assert_eq!(found, wanted);
+    for parameter in made.info().parameters {
+        let ends = if parameter.name.starts_with("leak") { [0.25, 0.75] } else { [-3.0, 3.5] };
+        assert_eq!(parameter.ends, ends, "{}", parameter.name);
+    }
+}
