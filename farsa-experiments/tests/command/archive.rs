@@ -107,9 +107,9 @@ fn an_archive_gives_back_the_runs_of_a_study() {
     assert_eq!(archived.replace("study.farsa/", "runs/study/"), table(&first, "runs/study"));
     // The report, and a trial of a champion and of an earlier individual.
     let report = format!("report runs/study/{} --html page.html --md page.md", runs().join(" runs/study/"));
-    for folder in [&first, &second] {
-        ok(own(), folder, &report);
-    }
+    ok(own(), &first, &report);
+    let said = ok(own(), &second, "sweep ../first/study.toml --list --html page.html --md page.md");
+    assert!(said.contains("\n6 runs: page.html, page.md, page-fitness-1.svg, "), "{said}");
     let md = fs::read_to_string(first.join("page.md")).expect("the page");
     for row in rows_of_kinds(&first.join("runs/study")) {
         assert!(md.contains(&row), "no {row:?} in {md}");
@@ -155,6 +155,8 @@ fn an_archive_grows_and_replaces_nothing_else() {
     let said = say(own(), &here, "sweep study.toml --list --archive study.farsa");
     assert_eq!((said.code, said.out.as_str()), (Some(2), ""), "{said:?}");
     assert!(said.err.contains("study.farsa: no run is finished"), "{said:?}");
+    let said = say(own(), &here, "sweep study.toml --list --md page.md");
+    assert!(said.code == Some(2) && said.err.contains("there is no report, because no run is finished"), "{said:?}");
     let said = ok(own(), &here, "sweep study.toml --replication 2 --archive study.farsa -q --json");
     let json: serde_json::Value = serde_json::from_str(&said).expect("JSON");
     let bytes = fs::metadata(here.join("study.farsa")).expect("it").len();
@@ -163,6 +165,7 @@ fn an_archive_grows_and_replaces_nothing_else() {
     let before = content(&here);
     for (arguments, words) in [
         ("sweep study.toml --replication 3 --archive study.farsa", "which is not among these"),
+        ("sweep study.toml --md study.toml", "study.toml: there is one already"),
         ("sweep study.toml --archive study.toml", "study.toml: there is one already, which is no archive"),
     ] {
         let said = say(own(), &here, arguments);

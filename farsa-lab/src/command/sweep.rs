@@ -14,8 +14,10 @@ use crate::command::invocation::Invocation;
 use crate::error::Error;
 use crate::escaped::OneLine;
 use crate::json::pretty;
+use crate::report::write;
 use crate::run::plan::Plan;
 use crate::run::summary::Summary;
+use crate::store::own_output::refuse_other;
 use crate::sweep::SweepFile;
 use crate::sweep::work::{Found, Sweep};
 
@@ -26,6 +28,8 @@ struct Results {
     found: Found,
     #[serde(skip_serializing_if = "Option::is_none")]
     archive: Option<Archived>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    report: Option<write::Summary>,
 }
 
 /// Written archive.
@@ -37,7 +41,7 @@ struct Archived {
 }
 
 impl<'e> Invocation<'e, '_> {
-    /// Makes or lists the runs of all points of a sweep, tests them, and archives the finished ones.
+    /// Makes or lists the runs of all points of a sweep, tests them, and reports and archives the finished ones.
     pub(super) fn sweep(&self, args: &SweepArgs) -> Result<(), Error> {
         let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
         let sweep = Sweep::new(&file, self.laboratory, &root)?;
@@ -46,6 +50,7 @@ impl<'e> Invocation<'e, '_> {
             let names: Vec<String> = names.iter().map(|name| below(name, &root)).collect();
             Archive::replaceable(path, names.iter().map(String::as_str))?;
         }
+        args.pages().try_for_each(refuse_other)?;
         let ready = |plan: &Plan<'e>| args.workers.check(plan);
         let found = if args.list {
             sweep.list(which, &ready)?
@@ -60,13 +65,24 @@ impl<'e> Invocation<'e, '_> {
             found
         };
         let archive = args.archive.as_deref().map(|path| self.archive(&found, &root, path)).transpose()?;
+        let report = args.pages().next().map(|_| self.report_runs(&found, args)).transpose()?;
         let mut text = found.text();
         if let Some(Archived { file, runs, bytes }) = &archive {
             // Writing into a string cannot fail.
             let _ = writeln!(text, "{}: {runs} runs in {bytes} bytes", OneLine(file));
         }
-        let results = Results { found, archive };
+        text.extend(report.iter().map(write::Summary::text));
+        let results = Results { found, archive, report };
         self.summary(args.json, &text, &|| pretty(&results))
+    }
+
+    /// Reports the finished runs, as `farsa report` does.
+    fn report_runs(&self, found: &Found, args: &SweepArgs) -> Result<write::Summary, Error> {
+        let runs = found.directories().map(|path| self.existing(path)).collect::<Result<Vec<_>, _>>()?;
+        if runs.is_empty() {
+            return Err(Error::Usage("there is no report, because no run is finished".into()));
+        }
+        write::report(runs, args.html.as_deref(), args.md.as_deref(), None, self.program)
     }
 
     /// Archives the finished runs.

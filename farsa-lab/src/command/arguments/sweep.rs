@@ -1,6 +1,6 @@
 //! Arguments of `farsa sweep`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 
@@ -28,6 +28,12 @@ pub(crate) struct SweepArgs {
     /// Archive the finished runs with their tests, for `merge` (replaces one of fewer)
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) archive: Option<PathBuf>,
+    /// Write a report as HTML
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) html: Option<PathBuf>,
+    /// Write a report as Markdown
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) md: Option<PathBuf>,
     /// The parent directory of the points [default: runs/FILE without extension]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     out: Option<PathBuf>,
@@ -42,6 +48,11 @@ impl SweepArgs {
     pub(crate) fn which(&self) -> Selection {
         let from_0 = |number: Option<u32>| number.map(|number| number as usize - 1);
         Selection { point: from_0(self.point), replication: from_0(self.replication) }
+    }
+
+    /// Iterates over the files of the report.
+    pub(crate) fn pages(&self) -> impl Iterator<Item = &Path> {
+        self.html.iter().chain(&self.md).map(PathBuf::as_path)
     }
 
     pub(crate) fn root(&self) -> PathBuf {
