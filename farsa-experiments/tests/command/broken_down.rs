@@ -65,8 +65,11 @@ fn trials_that_all_break_down_have_no_value() {
 
     ok(farsa(), &here, "report o --md o.md --html o.html");
     let page = fs::read_to_string(here.join("o.md")).expect("the page");
-    assert!(page.contains("| run | champion of | trials | broken down | success | fitness |"), "{page}");
-    assert!(page.contains("| o | generation 1 | 3 | 3 | – | –, – | – |"), "{page}");
+    assert!(
+        page.contains("| run | champion of | trials | broken down | success | fitness | trial by trial |"),
+        "{page}"
+    );
+    assert!(page.contains("| o | generation 1 | 3 | 3 | – | – | –, – |"), "{page}");
 
     // No trial of a replay or a page has a fitness.
     let said = say(farsa(), &here, "replay o --out o.csv --quiet");
