@@ -342,10 +342,11 @@ async function handled(browser, url, trial) {
   const back = await seen();
   check("c brings the camera back", Math.hypot(back.x - views[0].x, back.y - views[0].y) < 1);
   await looked(browser, scene);
-  await browser.run(() => farsa.seek(farsa.ticks - 150));
+  // A slow renderer shows few frames of a film.
+  await browser.run(() => farsa.seek(0));
   await click("#record");
   check("a film begins", await browser.run(() => farsa.playing && document.querySelector("#record").ariaPressed === "true"));
-  await browser.until(() => farsa.tick > farsa.ticks - 145);
+  await browser.until(() => farsa.tick > 0);
   await click("#record");
   await browser.until(() => farsa.filmed > 0);
   check("and the film is over", await browser.run(() => !farsa.playing && document.querySelector("#record").ariaPressed === "false"));

@@ -27,7 +27,8 @@ function filmOf(views, done) {
 		recorder.start();
 	}
 
-	return {take, stop: () => recorder?.stop()};
+	// The last frame is encoded after it is drawn.
+	return {take, stop: () => recorder && setTimeout(() => recorder.stop(), 100)};
 }
 
 // Saves a file.
