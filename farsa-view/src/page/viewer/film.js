@@ -24,11 +24,17 @@ function filmOf(views, done) {
 		recorder = new MediaRecorder(canvas.captureStream(30), {videoBitsPerSecond: 8e6});
 		recorder.ondataavailable = (event) => parts.push(event.data);
 		recorder.onstop = () => done(new Blob(parts, {type: recorder.mimeType}));
-		recorder.start();
+		recorder.start(100);
 	}
 
-	// The last frame is encoded after it is drawn.
-	return {take, stop: () => recorder && setTimeout(() => recorder.stop(), 100)};
+	// Stops when a frame was encoded, but after three seconds at the latest.
+	function stop(tries = 30) {
+		if (!recorder) return;
+		if (tries && !parts.some(({size}) => size)) setTimeout(stop, 100, tries - 1);
+		else recorder.stop();
+	}
+
+	return {take, stop: () => setTimeout(stop, 100)};
 }
 
 // Saves a file.
