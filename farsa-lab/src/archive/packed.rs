@@ -92,22 +92,25 @@ impl Archive {
         postcard::to_stdvec(&Content { runs: self.runs.keys().cloned().collect(), files })
     }
 
-    /// Checks that a file is missing, or an archive whose runs are all among these.
+    /// Checks that an archive can hold these runs, and that its file is missing or an archive whose runs are all among these.
     ///
     /// # Errors
     /// [`Error::Usage`].
     pub(crate) fn replaceable<'n>(path: &Path, names: impl IntoIterator<Item = &'n str>) -> Result<(), Error> {
+        let refused = |why: String| Error::Usage(format!("{}: {why}", path.display()));
+        let names: Vec<&str> = names.into_iter().collect();
+        if let Some(name) = names.iter().find(|name| !is_name(name)) {
+            return Err(refused(format!("an archive cannot hold the name {name:?}")));
+        }
         if fs::symlink_metadata(path).is_err() {
             return Ok(());
         }
-        let refused = |why: String| Error::Usage(format!("{}: {why}", path.display()));
         let there = Self::read(path).map_err(|error| match error {
             Error::File { why, fault: FileFault::Damaged, .. } => {
                 refused(format!("there is one already, which is no archive: {why}"))
             }
             other => other,
         })?;
-        let names: Vec<&str> = names.into_iter().collect();
         match there.runs.keys().find(|name| !names.contains(&name.as_str())) {
             Some(name) => Err(refused(format!("there is one already with the run {name:?}, which is not among these"))),
             None => Ok(()),
@@ -121,6 +124,9 @@ impl Archive {
     pub(crate) fn write(&self, path: &Path) -> Result<u64, Error> {
         Self::replaceable(path, self.runs.keys().map(String::as_str))?;
         let failed = |error: &dyn std::fmt::Display| Error::Other(format!("{}: {error}", path.display()));
+        if let Some(name) = self.runs.values().flat_map(BTreeMap::keys).find(|name| !is_name(name)) {
+            return Err(failed(&format!("an archive cannot hold the name {name:?}")));
+        }
         let content = self.to_content().map_err(|error| failed(&error))?;
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
         let deflated = encoder.write_all(&content).and_then(|()| encoder.finish()).map_err(|error| failed(&error))?;
@@ -242,6 +248,8 @@ mod tests {
         for name in ["", "/a", "a/", "a//b", "..", "a/../b", ".hidden", "c:a", "a\\b", "a\nb", &deep, &"x".repeat(1001)]
         {
             assert!(!is_name(name), "{name}");
+            let refused = archive(&[name]).write(Path::new("none/new.farsa")).unwrap_err().to_string();
+            assert_eq!(refused, format!("none/new.farsa: an archive cannot hold the name {name:?}"));
             let content = archive(&[name]).to_content().unwrap();
             assert_eq!(Archive::from_content(&content).unwrap_err(), format!("holds the name {name:?}"));
         }

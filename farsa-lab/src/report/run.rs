@@ -63,27 +63,29 @@ impl<'e> Run<'e> {
     pub(crate) fn read(directory: Directory, plan: Plan<'e>) -> Result<Self, Error> {
         evolved(&directory)?;
         let checkpoint = Checkpoint::read(&plan, &directory)?;
-        let told = RunRecord::read(&plan, &directory, &checkpoint)?;
-        let manifest = Manifest::read_or_new(&directory.manifest(), &told.identity)?;
-        let Some(champion) = told.champion() else {
+        let run_record = RunRecord::read(&plan, &directory, &checkpoint)?;
+        let manifest = Manifest::read_or_new(&directory.manifest(), &run_record.identity)?;
+        let Some(champion) = run_record.champion() else {
             return Err(Error::damaged(&directory.record(), "no generation is finished yet"));
         };
         let so_far = |best: &mut f64, line: &Line| {
             *best = best.max(line.row[0]);
             Some(*best)
         };
-        let is_best = |row: &SampledTest| told.record.champion(0, row.generation) == Some(row.individual as usize);
+        let is_best =
+            |row: &SampledTest| run_record.record.champion(0, row.generation) == Some(row.individual as usize);
         // Other individuals are those of an earlier run.
         let sampled = generations::read(&directory)?.filter(|tests| tests.rows.iter().all(is_best));
-        let best = told.lines.iter().filter(|_| told.keeps_champion).scan(f64::NEG_INFINITY, so_far).collect();
+        let best =
+            run_record.lines.iter().filter(|_| run_record.keeps_champion).scan(f64::NEG_INFINITY, so_far).collect();
         let evaluator = plan.evaluator()?;
         let kept = if plan.strategy()?.collection().is_some() {
-            let search = resumed(&plan, &directory, &checkpoint, &told.record)?;
+            let search = resumed(&plan, &directory, &checkpoint, &run_record.record)?;
             CollectionTable::new(&search, evaluator.as_ref()).map(|table| table.drawn(&search, &plan.name()))
         } else {
             None
         };
-        let RunRecord { lines, diagnostics, .. } = told;
+        let RunRecord { lines, diagnostics, .. } = run_record;
         let (populations, terms) = (evaluator.info().populations, evaluator.info().terms);
         let populations = if populations.len() > 1 { populations } else { Vec::new() };
         let tested = |(table, record): (Table, Option<Record>)| Tested { findings: table.findings(&terms), record };
