@@ -251,6 +251,17 @@ fn names_are_plain_and_bounded_in_comments() {
     assert!(line(&format!(" *   0 motor 0 : muscle of {muscle} that pulls towards the lower limit")), "{header}");
 }
 
+#[test]
+fn channels_from_outputs_to_inputs_are_described() {
+    let mut controller = export(leaky(2, 1, 2, Leak::Filter));
+    controller.sensors[1].reads = SensorReading::PreviousOutput { channel: 1, scale: 50.0 };
+    controller.motors[1].drives = MotorDrive::NextInput { channel: 1 };
+    let CFiles { header, .. } = controller.c("loop", "A test").expect("files");
+    for part in [": output 1 of the previous step, times 50, 0 in the first step\n", ": input 1 of the next step\n"] {
+        assert!(header.contains(part), "no {part} in {header}");
+    }
+}
+
 /// A linear neuron whose weight on itself is 1e20: its activation is x in step 1, about 1e20 in 2, and infinite in 3.
 #[test]
 fn outputs_without_a_literal_are_refused() {

@@ -162,6 +162,13 @@ pub enum SensorReading {
         /// Value of the sensor during this phase.
         amplitude: f32,
     },
+    /// Output of the network in the previous step. It reads scale * output, and 0 in the first step.
+    PreviousOutput {
+        /// Number of the output, from 0.
+        channel: usize,
+        /// Reading at an output of 1.
+        scale: f32,
+    },
 }
 
 /// A point that is fixed to a body.
@@ -212,6 +219,11 @@ pub enum MotorDrive {
     /// A channel that only the experiment's own program can drive.
     Channel {
         /// Number of the motor channel, from 0.
+        channel: usize,
+    },
+    /// Input of the network in the next step, which is not clamped. Its scale is in [`SensorReading::PreviousOutput`].
+    NextInput {
+        /// Number of the input, from 0.
         channel: usize,
     },
     /// Desired positions of several servos. Each is set to from + (to - from) y.

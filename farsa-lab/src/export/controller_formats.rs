@@ -83,12 +83,17 @@ impl fmt::Display for Scaling<'_> {
                 let between = if *linear { "" } else { ", a curve between" };
                 Some((&sensor.name, format!("reads {quantity} [{unit}]: 0 at {zero}, 1 at {one}{between}")))
             }
+            SensorReading::PreviousOutput { channel, scale } => Some((
+                &sensor.name,
+                format!("reads output {channel} of the previous step, times {scale}, and 0 in the first step"),
+            )),
             _ => None,
         });
         let motors = self.0.motors.iter().filter_map(|motor| match &motor.drives {
             MotorDrive::Quantity { quantity, unit, zero, one } => {
                 Some((&motor.name, format!("drives {quantity} [{unit}]: {zero} at 0, {one} at 1")))
             }
+            MotorDrive::NextInput { channel } => Some((&motor.name, format!("is input {channel} of the next step"))),
             _ => None,
         });
         for (number, (name, what)) in sensors.chain(motors).enumerate() {

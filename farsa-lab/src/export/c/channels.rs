@@ -53,6 +53,9 @@ fn reading(reading: &SensorReading) -> String {
             format!("{} [{}], 0 at {zero}, 1 at {one}{between}", shortened(quantity), shortened(unit))
         }
         SensorReading::Label { phase, amplitude } => format!("{amplitude} in the phase {}, else 0", shortened(phase)),
+        SensorReading::PreviousOutput { channel, scale } => {
+            format!("output {channel} of the previous step, times {scale}, 0 in the first step")
+        }
         SensorReading::Channel { .. } => String::new(),
     }
 }
@@ -71,6 +74,7 @@ fn drive(drive: &MotorDrive) -> String {
                 |servo: &ServoExport| format!("{} {} at 0, {} at 1", shortened(&servo.actuator), servo.from, servo.to);
             format!("position of servos [rad]: {}", servos.iter().map(servo).collect::<Vec<_>>().join("; "))
         }
+        MotorDrive::NextInput { channel } => format!("input {channel} of the next step"),
         MotorDrive::Channel { .. } => String::new(),
     }
 }
