@@ -27,6 +27,8 @@ use crate::parts::agents::Agents;
 use crate::parts::network::AnyNetwork;
 use crate::parts::reflex::{Reflex, ReflexController};
 
+/// Version of the values of experiments in the articulated world.
+const ARTICULATED_VERSION: u32 = 2;
 /// Most bytes of a file.
 const MAX_BYTES: u64 = 1_000_000;
 
@@ -438,6 +440,12 @@ fn conditions(document: &Document, table: &[Setting], source: &Source) -> Result
 impl Experiment for ComposedExperiment {
     fn name(&self) -> &'static str {
         self.name
+    }
+
+    fn values_version(&self) -> u32 {
+        let word = |path: &str| self.document.pointer(path).and_then(Value::as_str);
+        let jointed = ["arm-and-hand", "model"].contains(&word("/robot/kind").unwrap_or_default());
+        if jointed || word("/world/engine") == Some("articulated") { ARTICULATED_VERSION } else { 1 }
     }
 
     fn summary(&self) -> &'static str {

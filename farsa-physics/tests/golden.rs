@@ -55,7 +55,9 @@ fn load<R: Precision>(world: &World<R>) -> (usize, f64) {
 /// Arm, hand, sphere and table under random commands, from each of the four starts and in each manner.
 fn babbling<R: Precision>() -> u64 {
     let robot = scene();
-    let mut world = World::new(model::<R>(&robot, Options::default()));
+    // As in `reach-grasp-lift`: steps that are halved where links are fast.
+    let options = Options { substeps: 2, path_error: Some(1e-4), ..Options::default() };
+    let mut world = World::new(model::<R>(&robot, options));
     let groups = ArmAndHand::default().servo_groups();
     let (mut digest, mut touching) = (Digest::new(), 0);
     for episode in 0..2 * Babble::MANNERS {
@@ -114,11 +116,11 @@ fn squeezing<R: Precision>() -> u64 {
 #[test]
 fn random_commands_keep_their_bits() {
     let digests = [babbling::<f32>(), babbling::<f64>()];
-    assert_eq!(digests, [0xa607_0089_7fcf_f6a5, 0x3441_29f8_e76d_247a], "{digests:#018x?}");
+    assert_eq!(digests, [0x5253_2ec6_a526_8d8f, 0xbbff_1840_904f_f61f], "{digests:#018x?}");
 }
 
 #[test]
 fn contacts_under_load_keep_their_bits() {
     let digests = [squeezing::<f32>(), squeezing::<f64>()];
-    assert_eq!(digests, [0x614d_e033_5d59_bc97, 0x9ac7_ee31_ad8c_65c7], "{digests:#018x?}");
+    assert_eq!(digests, [0x091f_ae5a_3dde_ccff, 0xbb18_0274_4926_2cc4], "{digests:#018x?}");
 }

@@ -145,7 +145,7 @@ fn together(name: &str, robot: &Robot, batch: &mut Batch, groups: &[Vec<ServoRan
 #[test]
 fn every_lane_has_the_bits_of_the_world_alone() {
     let robot = scene();
-    let model = model(&robot, Options::default());
+    let model = model(&robot, Options { substeps: 2, path_error: Some(1e-4), ..Options::default() });
     let groups = ArmAndHand::default().servo_groups();
     let truths: Vec<Truth> = (0..WORLDS).map(|lane| alone(&robot, &model, &groups, lane)).collect();
     let contacts: Vec<usize> = truths.iter().map(|t| t.contacts).collect();

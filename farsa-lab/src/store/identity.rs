@@ -9,9 +9,9 @@ use crate::experiment::settings::Value;
 
 /// Version of the values that this library computes.
 ///
-/// It is increased whenever a change in the crates below experiments leads to different trials for the same
-/// configuration, seed and genes. For changes in an experiment itself, see
-/// [`Experiment::values_version`](crate::Experiment::values_version).
+/// It is increased whenever a change in the crates below experiments leads to different trials in every world, for the
+/// same configuration, seed and genes. A change in an experiment, or of one kind of world, increases
+/// [`Experiment::values_version`](crate::Experiment::values_version) of the experiments concerned.
 pub const VALUES_VERSION: u32 = 3;
 
 /// Start of the keys of file checksums in the settings of an [`Identity`]. Keys of settings have no blanks.

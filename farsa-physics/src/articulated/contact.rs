@@ -38,8 +38,7 @@ pub(crate) fn place_colliders<S: Scalar>(
 
 /// The distance within which what closes at a speed is looked at [m], and a little more for turning.
 #[inline(always)]
-pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, approach: S) -> S {
-    let h = S::splat(simd, model.h);
+pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, h: S, approach: S) -> S {
     S::splat(simd, model.margin) + h * (approach + h.constant(TURNING))
 }
 

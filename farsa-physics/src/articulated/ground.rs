@@ -129,21 +129,25 @@ fn set_up<S: Scalar>(
     any
 }
 
-/// Brings the impulses of one ground to their law, given all others.
+/// Brings the impulses of one ground to their law in the lanes of `running`, given all others, for this share of a
+/// dynamics step. Returns by how much the body's speeds change [m/s or rad/s].
 #[inline(always)]
 pub(crate) fn relax_ground<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
     ground: &Ground<S::Real>,
+    share: S,
+    running: S::Mask,
     rubbing: &mut Rubbing<S>,
     response: &mut [S],
-) {
-    if !rubbing.mask.any() {
-        return;
+) -> S {
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
+    let mask = rubbing.mask & running;
+    if !mask.any() {
+        return zero;
     }
     let dof = |link: u16| usize::from(model.links[usize::from(link)].dof);
     let [one_at, other_at] = [dof(ground.sliders[0]), dof(ground.sliders[1])];
-    let zero = S::splat(simd, S::Real::from_f64(0.0));
     let one = S::splat(simd, S::Real::from_f64(1.0));
     let old = rubbing.impulse;
     let (y, [y1, y0]) = (rubbing.first, rubbing.second);
@@ -153,34 +157,36 @@ pub(crate) fn relax_ground<S: Scalar>(
     let [a1, a2, a12, determinant] = rubbing.response;
     let rest = [old[0] - (a2 * v0 - a12 * v1) * determinant, old[1] - (a1 * v1 - a12 * v0) * determinant];
     let slide = [old[0] - v0 * rubbing.slide, old[1] - v1 * rubbing.slide];
-    let limit = S::splat(simd, ground.limit);
+    let limit = S::splat(simd, ground.limit) * share;
     let held = (rest[0] * rest[0] + rest[1] * rest[1]).le(limit * limit);
     let length = (slide[0] * slide[0] + slide[1] * slide[1]).sqrt();
     let over = length.gt(limit);
     let shrink = S::select(over, limit / S::select(over, length, one), one);
-    let mask = rubbing.mask;
-    rubbing.held = held & mask;
-    let mut new = [zero; 3];
+    rubbing.held = (held & mask) | (rubbing.held & !mask);
+    let mut new = old;
     for k in 0..2 {
-        new[k] = S::select(mask, S::select(held, rest[k], slide[k] * shrink), zero);
+        new[k] = S::select(mask, S::select(held, rest[k], slide[k] * shrink), old[k]);
     }
     let [d0, d1] = [new[0] - old[0], new[1] - old[1]];
+    let mut change = (d0.abs() * a1).max(d1.abs() * a2);
     response[one_at] = S::select(mask, response[one_at] + (y * d0 + y0 * d1), response[one_at]);
     response[other_at] = S::select(mask, response[other_at] + y1 * d1, response[other_at]);
     if let Some(turn) = ground.turn {
         let turn_at = dof(turn);
         let [t2, t1, t0] = rubbing.turn;
         let w = rubbing.velocity[2] + (t2 * response[turn_at] + t1 * response[other_at] + t0 * response[one_at]);
-        let limit = S::splat(simd, ground.turning_limit);
+        let limit = S::splat(simd, ground.turning_limit) * share;
         let rest = old[2] - w * rubbing.turning;
-        rubbing.held_turning = rest.abs().le(limit) & mask;
-        new[2] = S::select(mask, rest.clamp(-limit, limit), zero);
+        rubbing.held_turning = (rest.abs().le(limit) & mask) | (rubbing.held_turning & !mask);
+        new[2] = S::select(mask, rest.clamp(-limit, limit), old[2]);
         let d = new[2] - old[2];
+        change = change.max(d.abs() / rubbing.turning);
         for (at, row) in [(turn_at, t2), (other_at, t1), (one_at, t0)] {
             response[at] = S::select(mask, response[at] + row * d, response[at]);
         }
     }
     rubbing.impulse = new;
+    change
 }
 
 /// Leaves bodies that are held exactly at rest, where rounding would let them creep.

@@ -93,9 +93,15 @@ pub(crate) fn place_spheres<S: Scalar>(
 /// Where a pair's own bounds are near ([`crate::articulated::solver`]), so are the spheres, which are larger and close no more
 /// slowly.
 #[inline(always)]
-pub(crate) fn spheres_near<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, a: &Sphere<S>, b: &Sphere<S>) -> S::Mask {
+pub(crate) fn spheres_near<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    h: S,
+    a: &Sphere<S>,
+    b: &Sphere<S>,
+) -> S::Mask {
     let apart = sub(a.centre, b.centre);
-    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach(simd, model, a.speed + b.speed))
+    (dot(apart, apart).sqrt() - a.radius - b.radius).le(reach(simd, model, h, a.speed + b.speed))
 }
 
 /// Returns the gap of a point of a distant group, for which no smaller gap was computed.

@@ -21,6 +21,9 @@ mod ground;
 /// Groups of pairs that are tested together.
 #[cfg(feature = "alloc")]
 mod group;
+/// Dynamics steps in halves.
+#[cfg(feature = "alloc")]
+mod halves;
 /// One world of a batch behind the ports.
 #[cfg(all(feature = "lanes", not(test)))]
 mod lane;
@@ -63,6 +66,9 @@ mod step;
 /// Joint stops as one-sided rows.
 #[cfg(feature = "alloc")]
 mod stop;
+/// The sweeps over the rows.
+#[cfg(feature = "alloc")]
+mod sweep;
 /// Forward kinematics, articulated bodies, Newton-Euler, composite bodies.
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 pub(crate) mod tree;

@@ -23,9 +23,16 @@ pub struct Options {
     pub substeps: u32,
     /// Gravity [m/s2].
     pub gravity: [f64; 3],
-    /// Number of sweeps over the contacts in each dynamics step. Where two free boxes can touch it is four times this
-    /// number, because stacks converge slowly.
+    /// Largest number of sweeps over the contacts in each dynamics step. Where two free boxes can touch it is four times
+    /// this number, because stacks converge slowly.
     pub sweeps: u32,
+    /// The sweeps of a world end with one that changes no contact's velocity by more than this times the dynamics step
+    /// [m/s2]. It is 0 where two free boxes can touch or a body slides on the
+    /// ground.
+    pub settled: f64,
+    /// Largest distance by which a link may leave its tangent in a dynamics step [m]. Where one leaves it by more, a world
+    /// with contacts makes the step in two halves. `None` leaves all steps whole.
+    pub path_error: Option<f64>,
     /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]. This determines how much creep is
     /// left.
     pub friction_compliance: f64,
@@ -46,6 +53,8 @@ impl Default for Options {
             substeps: 4,
             gravity: [0.0, 0.0, -9.81],
             sweeps: 10,
+            settled: 0.04,
+            path_error: None,
             friction_compliance: 1e-3,
             limit_frequency: 1000.0,
             limit_damping: 1.0,
@@ -175,7 +184,7 @@ pub(crate) struct Ground<R> {
     /// The sliding links, the one on the world first.
     pub(crate) sliders: [u16; 2],
     pub(crate) turn: Option<u16>,
-    /// Largest impulse of a dynamics step [N s], and its largest moment [N m s].
+    /// Largest impulse of a whole dynamics step [N s], and its largest moment [N m s].
     pub(crate) limit: R,
     pub(crate) turning_limit: R,
 }
@@ -267,7 +276,10 @@ pub struct Model<R> {
     pub(crate) time_step: R,
     pub(crate) h: R,
     pub(crate) substeps: u32,
+    /// Square of the product of a link's spin and speed from which on a dynamics step is halved [m2/s4].
+    pub(crate) fast: Option<R>,
     pub(crate) sweeps: u32,
+    pub(crate) settled: R,
     pub(crate) friction_compliance: R,
     pub(crate) margin: R,
 }

@@ -22,6 +22,8 @@ fn check(options: &Options) -> Result<(), ModelError> {
         ("time_step", options.time_step, 1e-6, 1.0),
         ("substeps", f64::from(options.substeps), 1.0, 1e6),
         ("sweeps", f64::from(options.sweeps), 1.0, 1e4),
+        ("settled", options.settled, 0.0, 1e3),
+        ("path_error", options.path_error.unwrap_or(1.0), 1e-9, 1e3),
         ("friction_compliance", options.friction_compliance, 0.0, 1e6),
         ("limit_frequency", options.limit_frequency, 1.0, 1e6),
         ("limit_damping", options.limit_damping, 0.0, 1e3),
@@ -174,7 +176,8 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
     Ok(pairs)
 }
 
-/// Sweeps for each one of the options in a world of stacks. Impulses pass through one box of a stack per sweep.
+/// Sweeps for each one of the options in a world of stacks. Impulses pass through one box of a stack per sweep, so small
+/// changes do not show that the stack has settled.
 const STACK_SWEEPS: u32 = 4;
 
 /// Returns whether two free boxes can touch.
@@ -273,14 +276,17 @@ impl<R: Real> Model<R> {
             pairs_of(robot, &links, &colliders)?;
         let (groups, clusters) = groups_of(robot, &pairs, |collider| is_plane(&colliders[collider].1));
         let h = options.time_step / f64::from(options.substeps);
+        // In a step, what turns at w and moves at v leaves its tangent by h^2 |w x v| / 2.
+        let fast = options.path_error.map(|error| 2.0 * error / (h * h));
         let grounds = grounds_of(robot, &mounts, &colliders, &mut pairs, h);
         let positions = links.iter().map(|l| if l.motion == Motion::Floating { 7 } else { 1 }).sum();
         let dofs = links.iter().map(|l| if l.motion == Motion::Floating { 6 } else { 1 }).sum();
         let initial = start_of(robot, &links, &mounts, positions + dofs);
         set_limits(robot, &mounts, &mut links, &initial, dofs, options, least_ratio::<R>())?;
         let stop_paths = stop_paths_of(&links);
-        let sweeps =
-            if has_stacks(&pairs, &links, &colliders) { STACK_SWEEPS * options.sweeps } else { options.sweeps };
+        let stacks = has_stacks(&pairs, &links, &colliders);
+        let sweeps = if stacks { STACK_SWEEPS * options.sweeps } else { options.sweeps };
+        let settled = if stacks || !grounds.is_empty() { 0.0 } else { options.settled };
         let actuators =
             robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
         let bodies_of = |pair: &farsa_body::robot::Pair| pair.colliders.map(|c| robot.colliders[c].body);
@@ -315,7 +321,9 @@ impl<R: Real> Model<R> {
             time_step: R::from_f64(options.time_step),
             h: R::from_f64(h),
             substeps: options.substeps,
+            fast: fast.map(|product| R::from_f64(product * product)),
             sweeps,
+            settled: R::from_f64(settled),
             friction_compliance: R::from_f64(options.friction_compliance),
             margin: R::from_f64(options.margin),
         };

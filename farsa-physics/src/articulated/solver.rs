@@ -11,35 +11,35 @@ use farsa_num::{Mask, Real, Scalar};
 use crate::articulated::boxes::{BOX_POINTS, find_boxes, hand_over};
 use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::{clearance, find, halves_of_boxes, reach};
-use crate::articulated::ground::{Rubbing, relax_ground};
+use crate::articulated::ground::Rubbing;
 use crate::articulated::group::{Sphere, forget_group, forget_point, rolling_words, spheres_near, unknown_gap};
 use crate::articulated::link::LinkData;
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
 use crate::articulated::spatial::{Vector, add, dot, scale, select, sub};
-use crate::articulated::stop::{Stop, length_of, relax_stop};
+use crate::articulated::stop::Stop;
 use crate::articulated::tree::Root;
 
 /// One contact point's block of three rows: normal, two tangents (or spin and two rolling axes).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Block<S: Scalar> {
-    mask: S::Mask,
-    axes: [Vector<S>; 3],
+    pub(crate) mask: S::Mask,
+    pub(crate) axes: [Vector<S>; 3],
     /// Relative velocity along the axes without contact impulses.
-    velocity: [S; 3],
-    impulse: [S; 3],
+    pub(crate) velocity: [S; 3],
+    pub(crate) impulse: [S; 3],
     /// `A = J M^-1 J^T` of the block: nn, 11, 22, n1, n2, 12.
-    response: [S; 6],
+    pub(crate) response: [S; 6],
     /// Reciprocals of the diagonal response: of the normal row, or of all three rolling rows.
-    inverse: [S; 3],
+    pub(crate) inverse: [S; 3],
     /// The tangents' diagonal and the reciprocal of their determinant.
-    stick: [S; 3],
-    slide: S,
+    pub(crate) stick: [S; 3],
+    pub(crate) slide: S,
     /// Compliance and offset of the normal law.
-    compliance: S,
-    offset: S,
-    gap: S,
-    point: Vector<S>,
+    pub(crate) compliance: S,
+    pub(crate) offset: S,
+    pub(crate) gap: S,
+    pub(crate) point: Vector<S>,
 }
 
 impl<S: Scalar> Block<S> {
@@ -76,6 +76,11 @@ struct Candidate<S: Scalar> {
 
 /// The parts of the scratch that the contact solver uses.
 pub(crate) struct Solver<'a, S: Scalar> {
+    /// Duration of the present step [s], and its share of a whole dynamics step, one or a half.
+    pub(crate) h: S,
+    pub(crate) share: S,
+    /// The lanes that make the step.
+    pub(crate) live: S::Mask,
     pub(crate) placed: &'a [PlacedShape<S>],
     pub(crate) spheres: &'a [Sphere<S>],
     /// The points of the present pair of boxes.
@@ -101,10 +106,16 @@ pub(crate) struct Solver<'a, S: Scalar> {
 
 /// Distance between a pair's bounds, and the distance within which its surfaces are looked at [m].
 #[inline(always)]
-fn bounds<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, pair: &Pair<S::Real>, placed: &[PlacedShape<S>]) -> [S; 2] {
+fn bounds<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    h: S,
+    pair: &Pair<S::Real>,
+    placed: &[PlacedShape<S>],
+) -> [S; 2] {
     let [a, b] = pair.colliders;
     let approach = sub(placed[a].velocity, placed[b].velocity);
-    [clearance(simd, model, pair, placed), reach(simd, model, dot(approach, approach).sqrt())]
+    [clearance(simd, model, pair, placed), reach(simd, model, h, dot(approach, approach).sqrt())]
 }
 
 #[inline(always)]
@@ -116,7 +127,7 @@ fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
 /// Returns the number of pairs whose surfaces were examined in the step that left the colliders at these places.
 pub(crate) fn near_pairs<R: Real>(model: &Model<R>, placed: &[PlacedShape<R>]) -> usize {
     let near = |pair: &&Pair<R>| {
-        let [far, reach] = bounds((), model, pair, placed);
+        let [far, reach] = bounds((), model, model.h, pair, placed);
         far <= reach
     };
     model.pairs.iter().filter(near).count()
@@ -156,7 +167,9 @@ impl<S: Scalar> Solver<'_, S> {
         }
         for group in &model.groups {
             // In which lanes a group's spheres are near: in the others its pairs are not looked at.
-            let within = group.clusters.map(|[a, b]| spheres_near(simd, model, &self.spheres[a], &self.spheres[b]));
+            let within = group
+                .clusters
+                .map(|[a, b]| self.live & spheres_near(simd, model, self.h, &self.spheres[a], &self.spheres[b]));
             if within.is_some_and(|within| !within.any()) {
                 forget_group(simd, model, group, points, rolling_impulses);
                 continue;
@@ -186,9 +199,9 @@ impl<S: Scalar> Solver<'_, S> {
         // Broad phase: most pairs are far apart, and cost one distance. Every way out of here writes the words of all
         // points, or an impulse of an earlier step would start a later contact.
         let pair = &model.pairs[p];
-        let [far, reach] = bounds(simd, model, pair, self.placed);
+        let [far, reach] = bounds(simd, model, self.h, pair, self.placed);
         // Overlapping bounds do not imply a contact of the surfaces.
-        let (mut near, mut far) = (far.le(reach), far.max(S::splat(simd, S::Real::from_f64(0.0))));
+        let (mut near, mut far) = (self.live & far.le(reach), far.max(S::splat(simd, S::Real::from_f64(0.0))));
         if let Some(within) = within {
             near = near & within;
             far = S::select(within, far, unknown_gap(simd));
@@ -216,9 +229,9 @@ impl<S: Scalar> Solver<'_, S> {
                 forget_point(words, rolling, candidate.gap);
                 continue;
             }
-            self.normal_block(simd, model, pair, index, &candidate, [words[0], words[1], words[2]]);
+            self.normal_block(simd, model, pair, index, &candidate, scale([words[0], words[1], words[2]], self.share));
             if let [x, y, z] = *rolling {
-                self.rolling_block(simd, model, pair, index, [x, y, z]);
+                self.rolling_block(simd, model, pair, index, scale([x, y, z], self.share));
             }
             touched[0] = touched[0] | candidate.mask;
             if pair.at_stops {
@@ -247,7 +260,6 @@ impl<S: Scalar> Solver<'_, S> {
         far: S,
     ) -> Candidate<S> {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
-        let h = S::splat(simd, model.h);
         let margin = S::splat(simd, model.margin);
         let links = links_of_pair(model, pair);
         let velocity = sub(
@@ -258,7 +270,7 @@ impl<S: Scalar> Solver<'_, S> {
         // the margin. A fast shape is then stopped before it is inside. A separating velocity does not count,
         // because contacts pushed by others may need the point all the same.
         let closing = dot(velocity, point.normal).min(zero);
-        let mask = near & point.valid & (point.gap + h * closing).lt(margin);
+        let mask = near & point.valid & (point.gap + self.h * closing).lt(margin);
         // The memory of a lane must not depend on its neighbors.
         let gap = S::select(near & point.valid, point.gap, far);
         Candidate { point: *point, velocity, mask, gap }
@@ -278,7 +290,7 @@ impl<S: Scalar> Solver<'_, S> {
     ) {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         let one = S::splat(simd, S::Real::from_f64(1.0));
-        let h = S::splat(simd, model.h);
+        let h = self.h;
         let Candidate { point, velocity: v, mask, gap } = *candidate;
         let [t1, t2] = tangents(point.normal);
         let axes = [point.normal, t1, t2];
@@ -363,86 +375,7 @@ impl<S: Scalar> Solver<'_, S> {
         apply(&pair.reach.dofs, rows, impulse, block.mask, self.response);
     }
 
-    /// Sweeps over the active points, forwards and backwards in turn, and over the stops.
-    #[inline(never)]
-    pub(crate) fn sweep(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
-        S::vectorize(
-            simd,
-            #[inline(always)]
-            || self.sweep_all(simd, model, count, stops),
-        );
-    }
-
-    #[inline(always)]
-    fn sweep_all(&mut self, simd: S::Simd, model: &Model<S::Real>, count: usize, stops: usize) {
-        // Symmetric projected Gauss-Seidel: backwards every other time, so that no point is always served last. A fixed
-        // number of sweeps, because a test of convergence would let lanes differ from worlds alone. The warm start of
-        // the next step corrects the rest.
-        for round in 0..model.sweeps {
-            for k in 0..count {
-                let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
-                self.relax(simd, model, usize::from(p), usize::from(index));
-            }
-            if stops > 0 {
-                let mut length = length_of(simd, self.response);
-                for stop in &mut self.stops[..stops] {
-                    relax_stop(simd, model, stop, self.stop_rows, self.response, &mut length);
-                }
-            }
-            for (ground, rubbing) in model.grounds.iter().zip(&mut *self.rubbing) {
-                relax_ground(simd, model, ground, rubbing, self.response);
-            }
-        }
-    }
-
-    /// Brings one point's impulse to its law, given all others.
-    #[inline(always)]
-    fn relax(&mut self, simd: S::Simd, model: &Model<S::Real>, pair: usize, index: usize) {
-        let pair = &model.pairs[pair];
-        let dofs = &pair.reach.dofs;
-        let n = dofs.len();
-        let zero = S::splat(simd, S::Real::from_f64(0.0));
-        let slip = S::splat(simd, model.friction_compliance);
-        let block = &mut self.blocks[pair.point + index];
-        let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
-        let mut v = velocity(dofs, rows, block.velocity, self.response);
-        let [_, _, _, a01, a02, a12] = block.response;
-        // Normal row: l += -(v + c l + offset) / (A_nn + c), not below 0. The change acts across at once.
-        let old = block.impulse;
-        let normal = (old[0] - (v[0] + block.compliance * old[0] + block.offset) * block.inverse[0]).max(zero);
-        let d0 = normal - old[0];
-        v[1] += a01 * d0;
-        v[2] += a02 * d0;
-        // Sticking solves both tangents at once. Sliding steps against the velocity, alike in all directions, and is
-        // projected onto the cone of the new normal impulse.
-        let limit = S::splat(simd, pair.friction) * normal;
-        let (w1, w2) = (v[1] + slip * old[1], v[2] + slip * old[2]);
-        let stick = [
-            old[1] - (block.stick[1] * w1 - a12 * w2) * block.stick[2],
-            old[2] - (block.stick[0] * w2 - a12 * w1) * block.stick[2],
-            zero,
-        ];
-        let slide = [old[1] - w1 * block.slide, old[2] - w2 * block.slide, zero];
-        let holds = dot(stick, stick).le(limit * limit);
-        let across = select(holds, stick, cap(slide, limit));
-        let new = select(block.mask, [normal, across[0], across[1]], [zero; 3]);
-        block.impulse = new;
-        apply(dofs, rows, sub(new, old), block.mask, self.response);
-        // Rolling rows: each axis by its own diagonal, then the whole moment projected onto its limit.
-        if let Some(first) = pair.rolling {
-            let limit = S::splat(simd, pair.rolling_friction) * new[0];
-            let block = &mut self.rolling[first + index];
-            let rows = &self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
-            let v = velocity(dofs, rows, block.velocity, self.response);
-            let old = block.impulse;
-            let change = [v[0] * block.inverse[0], v[1] * block.inverse[1], v[2] * block.inverse[2]];
-            let new = select(block.mask, cap(sub(old, change), limit), [zero; 3]);
-            block.impulse = new;
-            apply(dofs, rows, sub(new, old), block.mask, self.response);
-        }
-    }
-
-    /// Writes the impulses into the state.
+    /// Writes the impulses into the state, as those of whole dynamics steps with the same forces.
     #[inline(always)]
     pub(crate) fn store(
         &self,
@@ -453,24 +386,25 @@ impl<S: Scalar> Solver<'_, S> {
         rolling_impulses: &mut [S],
     ) {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
+        let whole = zero.constant(1.0) / self.share;
         for &(p, index) in &self.active[..count] {
             let (pair, index) = (&model.pairs[usize::from(p)], usize::from(index));
             let block = &self.blocks[pair.point + index];
             let words = &mut points[POINT_WORDS * (pair.point + index)..POINT_WORDS * (pair.point + index + 1)];
-            let total = combine(&block.axes, block.impulse);
+            let total = combine(&block.axes, scale(block.impulse, whole));
             for k in 0..3 {
                 words[k] = S::select(block.mask, total[k], zero);
                 words[4 + k] = S::select(block.mask, block.point[k], zero);
             }
-            words[3] = block.impulse[0];
+            words[3] = block.impulse[0] * whole;
             // The gap at the end of the step: that is where the poses are, and what the force belongs to.
             let n = pair.reach.dofs.len();
             let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
             let v = velocity(&pair.reach.dofs, rows, block.velocity, self.response);
-            words[7] = S::select(block.mask, block.gap + S::splat(simd, model.h) * v[0], block.gap);
+            words[7] = S::select(block.mask, block.gap + self.h * v[0], block.gap);
             if let Some(first) = pair.rolling {
                 let roll = &self.rolling[first + index];
-                let total = combine(&roll.axes, roll.impulse);
+                let total = combine(&roll.axes, scale(roll.impulse, whole));
                 for k in 0..3 {
                     rolling_impulses[3 * (first + index) + k] = S::select(roll.mask, total[k], zero);
                 }
@@ -486,7 +420,7 @@ fn combine<S: Scalar>(axes: &[Vector<S>; 3], x: [S; 3]) -> Vector<S> {
 
 /// A vector shortened to `limit` where it is longer.
 #[inline(always)]
-fn cap<S: Scalar>(x: [S; 3], limit: S) -> [S; 3] {
+pub(crate) fn cap<S: Scalar>(x: [S; 3], limit: S) -> [S; 3] {
     let length = dot(x, x).sqrt();
     let over = length.gt(limit);
     let one = length.constant(1.0);

@@ -11,6 +11,7 @@ use crate::articulated::contact::place_colliders;
 use crate::articulated::external::Wrenches;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::group::{Sphere, place_spheres};
+use crate::articulated::halves::{fast_lanes, take_back};
 use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
@@ -21,6 +22,11 @@ use crate::articulated::tree::{Root, accelerations, forward_kinematics};
 /// Temporary results of a step. You create this once for a model and reuse it for every step.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Scalar> {
+    /// The present step's share of a whole dynamics step, one or a half, and the lanes that make it.
+    share: S,
+    live: S::Mask,
+    /// The state between the halves of a dynamics step, for the lanes that made it whole.
+    between: Vec<S>,
     pub(crate) links: Vec<LinkData<S>>,
     pub(crate) roots: Vec<Root<S>>,
     tau: Vec<S>,
@@ -47,6 +53,9 @@ impl<S: Scalar> Scratch<S> {
     pub fn new(simd: S::Simd, model: &Model<S::Real>) -> Self {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         Self {
+            share: S::splat(simd, S::Real::from_f64(1.0)),
+            live: zero.le(zero),
+            between: vec![zero; model.state_len()],
             links: vec![LinkData::new(simd); model.links.len()],
             roots: vec![Root::new(simd); model.roots],
             tau: vec![zero; model.dofs],
@@ -143,9 +152,7 @@ pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Par
 /// If `state` is shorter than [`Model::state_len`], or `scratch` is another model's.
 #[inline(always)]
 pub fn step<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], scratch: &mut Scratch<S>) {
-    for _ in 0..model.substeps {
-        substep(simd, model, state, scratch);
-    }
+    advance(simd, model, state, scratch, |_, _| {});
 }
 
 /// Makes one control step of one world under external forces, which act at every dynamics step and are then discarded.
@@ -156,16 +163,46 @@ fn step_one<R: Real + Scalar<Real = R, Simd = ()>>(
     scratch: &mut Scratch<R>,
     forces: &mut Wrenches<R>,
 ) {
-    for _ in 0..model.substeps {
+    advance((), model, state, scratch, |state, scratch| {
         if forces.any() {
             push(model, state, scratch, forces);
         }
-        substep((), model, state, scratch);
-    }
+    });
     forces.clear();
 }
 
-/// Adds to the velocities what the forces do in one dynamics step: `v += h M^-1 J^T f`.
+/// Makes the dynamics steps of a control step, each after `before`: whole, or in halves in the lanes where a link is fast.
+#[inline(always)]
+fn advance<S: Scalar>(
+    simd: S::Simd,
+    model: &Model<S::Real>,
+    state: &mut [S],
+    s: &mut Scratch<S>,
+    mut before: impl FnMut(&mut [S], &mut Scratch<S>),
+) {
+    let one = S::splat(simd, S::Real::from_f64(1.0));
+    for _ in 0..model.substeps {
+        let halved = fast_lanes(simd, model, &s.links);
+        s.share = S::select(halved, one.constant(0.5), one);
+        s.live = one.le(one);
+        let parts = if halved.any() { 2 } else { 1 };
+        for part in 0..parts {
+            if part == 1 {
+                s.live = halved;
+                s.between.copy_from_slice(state);
+            }
+            before(state, s);
+            substep(simd, model, state, s);
+            if part == 1 {
+                take_back(simd, model, halved, &s.between, state);
+            }
+            let (q, rest) = state.split_at(model.positions);
+            place_links(simd, model, q, rest, &mut s.links);
+        }
+    }
+}
+
+/// Adds to the velocities what the forces do in a dynamics step, or a half: `v += h M^-1 J^T f`.
 ///
 /// Source: own (articulated bodies [Featherstone2008] table 7.1 without gravity and velocities, under the efforts `J^T f`).
 /// The links of `scratch` must be placed, and are afterwards.
@@ -176,6 +213,7 @@ fn push<R: Real + Scalar<Real = R, Simd = ()>>(
     scratch: &mut Scratch<R>,
     forces: &mut Wrenches<R>,
 ) {
+    let h = model.h * scratch.share;
     let (q, v) = state.split_at_mut(model.positions);
     let (links, roots) = scratch.parts();
     place_links((), model, q, &forces.zeros, links);
@@ -183,7 +221,7 @@ fn push<R: Real + Scalar<Real = R, Simd = ()>>(
     let Wrenches { tau, diagonal, qdd, .. } = forces;
     accelerate((), model, [R::from_f64(0.0); 3], tau, diagonal, links, roots, qdd);
     for (v, a) in v.iter_mut().zip(qdd) {
-        *v += model.h * *a;
+        *v += h * *a;
     }
     place_links((), model, q, v, links);
 }
@@ -192,11 +230,11 @@ fn push<R: Real + Scalar<Real = R, Simd = ()>>(
 #[inline(always)]
 fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s: &mut Scratch<S>) {
     let zero = S::splat(simd, S::Real::from_f64(0.0));
-    let h = S::splat(simd, model.h);
+    let h = S::splat(simd, model.h) * s.share;
     let state = parts(model, state);
     // Velocities without contacts: v += h qdd, with qdd from the articulated bodies, whose factor stays in `links` and
     // `roots` for the contacts.
-    efforts(simd, model, state.q, state.v, state.commands, &mut s.tau, &mut s.diagonal);
+    efforts(simd, model, h, state.q, state.v, state.commands, &mut s.tau, &mut s.diagonal);
     accelerate(simd, model, model.gravity, &s.tau, &s.diagonal, &mut s.links, &mut s.roots, &mut s.qdd);
     for (v, a) in state.v.iter_mut().zip(&s.qdd) {
         *v += h * *a;
@@ -216,6 +254,9 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             *z = zero;
         }
         let mut solver = Solver {
+            h,
+            share: s.share,
+            live: s.live,
             placed: &s.placed,
             spheres: &s.spheres,
             manifold: &mut s.manifold,
@@ -240,6 +281,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             let stops = set_up_stops(
                 simd,
                 model,
+                h,
                 state.q,
                 state.v,
                 solver.work,
@@ -250,16 +292,15 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
                 solver.stops,
             );
             solver.stop_rows = &s.stop_rows;
-            solver.sweep(simd, model, count, stops);
-            solver.store(simd, model, count, state.points, state.rolling_impulses);
             let changed = touched | moved;
+            solver.sweep(simd, model, count, stops, changed & s.live);
+            solver.store(simd, model, count, state.points, state.rolling_impulses);
             respond(simd, model, &s.response, &s.inverse_sqrt_inertia, changed, &mut s.links, &s.roots, state.v);
             hold(simd, model, &s.rubbing, state.v);
         }
     }
     // Semi-implicit Euler: positions move by the new velocities.
-    integrate(simd, model, state.q, state.v, &s.links);
-    place_links(simd, model, state.q, state.v, &mut s.links);
+    integrate(simd, model, h, state.q, state.v, &s.links);
 }
 
 /// [`forward_kinematics`] as a separate function.
@@ -296,6 +337,7 @@ fn accelerate<S: Scalar>(
 fn efforts<S: Scalar>(
     simd: S::Simd,
     model: &Model<S::Real>,
+    h: S,
     q: &[S],
     v: &[S],
     commands: &[S],
@@ -303,7 +345,6 @@ fn efforts<S: Scalar>(
     diagonal: &mut [S],
 ) {
     let zero = S::splat(simd, S::Real::from_f64(0.0));
-    let h = S::splat(simd, model.h);
     for link in &model.links {
         let at = usize::from(link.dof);
         if link.motion == Motion::Floating {
@@ -396,8 +437,7 @@ fn respond<S: Scalar>(
 
 /// Positions from the new velocities.
 #[inline(always)]
-fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, q: &mut [S], v: &[S], work: &[LinkData<S>]) {
-    let h = S::splat(simd, model.h);
+fn integrate<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, h: S, q: &mut [S], v: &[S], work: &[LinkData<S>]) {
     for (link, w) in model.links.iter().zip(work) {
         let (iq, at) = (usize::from(link.q), usize::from(link.dof));
         if link.motion != Motion::Floating {

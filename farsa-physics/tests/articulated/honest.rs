@@ -8,7 +8,7 @@ use farsa_body::robot::{Robot, Surface};
 use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_body::{Pose, Twist};
 use farsa_num::{Domain, Stream};
-use farsa_physics::articulated::World;
+use farsa_physics::articulated::{Options, World};
 
 fn steps(time: f64, h: f64) -> usize {
     (time / h).round() as usize
@@ -49,12 +49,13 @@ fn a_held_sphere_rests() {
         let at = w.pose_of(Tabletop::SPHERE).position;
         let n = steps(1.0, h);
         let (mut sum, mut turns) = (0.0, 0);
+        let left = Options::default().settled * h;
         let mut last = [0.0; 3];
         for _ in 0..n {
             w.step();
             let v = w.velocity_of(Tabletop::SPHERE).linear;
             sum += v.iter().map(|x| x * x).sum::<f64>();
-            turns += (0..3).filter(|&k: &usize| v[k] * last[k] < 0.0 && v[k].abs() > 1e-7).count();
+            turns += (0..3).filter(|&k: &usize| v[k] * last[k] < 0.0 && v[k].abs() > left).count();
             last = v;
         }
         let end = w.pose_of(Tabletop::SPHERE).position;

@@ -12,6 +12,7 @@ mod energy;
 mod floating;
 mod forces;
 mod ground;
+mod halves;
 mod honest;
 mod icub;
 mod oracle;

@@ -3,8 +3,8 @@
 
 use crate::common;
 use crate::common::{
-    Babble, CLOSED, Wrist, close, commands, drive, first_point, ghost, hand_and_sphere, model, points_of, pose_hand,
-    put_in_the_palm, scene, start, stream,
+    Babble, CLOSED, Wrist, close, commands, drive, first_point, ghost, hand_and_sphere, model, one_step, points_of,
+    pose_hand, put_in_the_palm, scene, start, stream,
 };
 use farsa_body::actuators::Law;
 use farsa_body::ports::{Arrange, BodyId, JointId, World as _};
@@ -13,10 +13,6 @@ use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_body::{Pose, Twist};
 use farsa_physics::articulated::{Model, Options, Scratch, World, inverse_dynamics, jacobian, mass_matrix};
 use nalgebra::{DMatrix, DVector, Vector3};
-
-fn one_step(h: f64) -> Options {
-    Options { time_step: h, substeps: 1, ..Options::default() }
-}
 
 /// The matrix and the efforts of one implicit step: `M + h D + h^2 K`, and everything that accelerates.
 struct Dense {
@@ -329,11 +325,17 @@ fn check(robot: &Robot, options: Options, run: impl FnOnce(&mut Checker, &mut Wo
     misfit
 }
 
+/// The default sweeps, which may end earlier, or another number, of which all are made.
+fn swept(sweeps: u32) -> Options {
+    let default = one_step(2.5e-3);
+    if sweeps == default.sweeps { default } else { Options { sweeps, settled: 0.0, ..default } }
+}
+
 /// Random episodes of the whole scene: the hand hits the table and presses on it, kicks the sphere.
 fn babble(sweeps: u32) -> Misfit {
     let robot = scene();
     let groups = ArmAndHand::default().servo_groups();
-    check(&robot, Options { sweeps, ..one_step(2.5e-3) }, |checker, world, misfit| {
+    check(&robot, swept(sweeps), |checker, world, misfit| {
         for episode in 0..12 {
             start(&robot, world, &mut stream(31, episode), episode as usize);
             // Held commands.
@@ -353,7 +355,7 @@ fn babble(sweeps: u32) -> Misfit {
 fn grasp(sweeps: u32) -> Misfit {
     let arm = ArmAndHand::default();
     let robot = hand_and_sphere(Wrist::Fixed, arm.surface, Some(Law::Servo(arm.servo)));
-    check(&robot, Options { sweeps, gravity: [0.0; 3], ..one_step(2.5e-3) }, |checker, world, misfit| {
+    check(&robot, Options { gravity: [0.0; 3], ..swept(sweeps) }, |checker, world, misfit| {
         put_in_the_palm(world, 0.0);
         pose_hand(world, &CLOSED.map(|x| 0.5 * x));
         world.finish_placement();
@@ -397,7 +399,7 @@ fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
             );
             assert!(m.points > 500 && m.sticking > 300 && m.sliding > 20 && m.stops > 0, "too little happened");
             // These hold whether the sweeps have converged or not.
-            assert!(m.response < 1e-9 && m.cone < 1e-9 && m.stop < 1e-9);
+            assert!(m.response < 1e-9 && m.cone < 1e-9 && m.stop < if sweeps == 10 { 1e-8 } else { 1e-9 });
             match (name, sweeps) {
                 // A finger closed onto the palm is a separate loop, which takes more than 200 sweeps to the last digit.
                 ("random episodes", 200) => {
@@ -415,10 +417,11 @@ fn impulses_explain_the_change_of_velocity_and_keep_their_laws() {
                 ("a squeeze", 2000) => {
                     assert!(normal[0] < 1e-5 && stick[0] < 5e-5 && normal[1] < 5e-4 && stick[1] < 2e-3);
                 }
-                // The residual of the default: nothing in most steps, and 5 mm/s in the median of a hard squeeze.
+                // The residual of the default: far below what ends the sweeps, 1e-4 m/s, in most steps, and 5 mm/s in the median
+                // of a hard squeeze.
                 ("random episodes", _) => {
                     assert!(
-                        normal[0] < 1e-9 && stick[0] < 1e-9 && slide[0] < 1e-9 && normal[1] < 1e-3 && stick[1] < 1e-3
+                        normal[0] < 1e-5 && stick[0] < 1e-9 && slide[0] < 1e-9 && normal[1] < 1e-3 && stick[1] < 1e-3
                     );
                 }
                 _ => assert!(normal[0] < 7e-3 && stick[0] < 2e-2 && normal[1] < 0.1 && stick[1] < 0.2),

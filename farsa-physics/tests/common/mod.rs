@@ -31,9 +31,14 @@ pub(crate) fn model<R: Precision>(robot: &Robot, options: Options) -> Model<R> {
     Model::new(robot, &options).unwrap()
 }
 
+/// A control step of one dynamics step [s].
+pub(crate) fn one_step(h: f64) -> Options {
+    Options { time_step: h, substeps: 1, ..Options::default() }
+}
+
 /// A world of this dynamics step [s] under this gravity, downwards [m/s2].
 pub(crate) fn world(robot: &Robot, h: f64, gravity: f64) -> World<f64> {
-    World::new(model(robot, Options { time_step: h, substeps: 1, gravity: [0.0, 0.0, -gravity], ..Options::default() }))
+    World::new(model(robot, Options { gravity: [0.0, 0.0, -gravity], ..one_step(h) }))
 }
 
 /// A copy of the robot in which nothing touches.
