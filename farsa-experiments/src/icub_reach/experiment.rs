@@ -26,6 +26,11 @@ impl Experiment for IcubReach {
         "icub-reach"
     }
 
+    // 2: sweeps of contacts that settle.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn summary(&self) -> &'static str {
         "the left hand of an iCub reaches for targets in front of it, by angles or by speeds of six joints"
     }

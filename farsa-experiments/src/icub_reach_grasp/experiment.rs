@@ -39,9 +39,9 @@ impl Experiment for IcubReachGrasp {
         strategy("snes")
     }
 
-    // 2: contacts of two boxes.
+    // 2: contacts of two boxes. 3: sweeps that settle.
     fn values_version(&self) -> u32 {
-        2
+        3
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {

@@ -11,8 +11,9 @@ use farsa_nn::Controller;
 use farsa_nn::learning::Demonstration;
 use farsa_physics::articulated::{Model, World};
 
+use crate::reach_grasp_lift::config::OUTPUTS;
 use crate::reach_grasp_lift::episode::Judge;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+use crate::reach_grasp_lift::scene::{Motors, Scene, Senses};
 use crate::reach_grasp_lift::script::{GraspPlan, Statics, Timetable};
 
 /// The activation of both muscles of a pair without torque.

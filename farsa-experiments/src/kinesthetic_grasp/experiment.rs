@@ -6,7 +6,7 @@ use farsa_body::Recorder;
 use farsa_physics::articulated::World;
 
 use crate::kinesthetic_grasp::trainer::{Trainer, Training};
-use crate::reach_grasp_lift::config::Config as Reach;
+use crate::reach_grasp_lift::config::{Config as Reach, Labels};
 use crate::reach_grasp_lift::experiment::evaluator;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
@@ -59,7 +59,7 @@ impl Config {
     /// Returns the errors of `reach-grasp-lift`. It returns [`Error::Setting`] if another world is selected, because
     /// the arm can only be guided in the articulated world.
     pub fn read(settings: &Settings) -> Result<Self, Error> {
-        let reach = Reach::read(true, settings)?;
+        let reach = Reach::read(Labels::Given, settings)?;
         if reach.engine != Engine::Articulated {
             return Err(Error::setting(ENGINE, "the arm is guided in our own world alone"));
         }
@@ -83,9 +83,9 @@ impl Experiment for KinestheticGrasp {
     }
 
     // 2: the network is averaged over the latest gradient steps, with more demonstrations and fewer epochs.
-    // 3: contacts of palm and table are those of two boxes.
+    // 3: contacts of palm and table are those of two boxes. 4: dynamics steps of 5 ms in halves, and sweeps that settle.
     fn values_version(&self) -> u32 {
-        3
+        4
     }
 
     fn summary(&self) -> &'static str {

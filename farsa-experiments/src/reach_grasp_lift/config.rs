@@ -12,6 +12,16 @@ use crate::worlds::Engine;
 
 /// Number of trials in an evaluation. Each trial has a different start \[Ferrauto2010, 2.3.4\].
 pub const TRIALS: usize = 4;
+/// Number of motor channels. There is an activation for each of the 14 muscles, and a position for each of the 9 servo
+/// groups.
+pub const OUTPUTS: usize = 23;
+/// Sensor channels without the labels.
+pub(crate) const PLAIN_SENSORS: usize = 26;
+/// Labels, one for each phase.
+pub(crate) const LABELS: usize = 3;
+
+/// Largest distance by which a link leaves its tangent in a dynamics step before the step is halved (in meters).
+const PATH_ERROR: f64 = 1e-4;
 
 /// Defines which individuals share the random displacements at the start of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -34,19 +44,58 @@ pub enum SphereFrame {
     Icub,
 }
 
+/// The source of the three label inputs of the network. Each variant is a condition of the experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Labels {
+    /// Labels of the current phase. This is condition A of the source.
+    #[default]
+    Given,
+    /// No label inputs. This is condition B of the source.
+    None,
+    /// Three further outputs of the network. Their values are the labels of the next step, and 0 in the first step of a
+    /// trial.
+    Own,
+}
+
+impl Labels {
+    /// All variants in the order of the conditions.
+    pub const ALL: [Self; 3] = [Self::Given, Self::None, Self::Own];
+    /// Names of the conditions.
+    pub const NAMES: [&'static str; 3] = ["labels", "no-labels", "self-labels"];
+
+    /// Returns the variant of the condition with the given name. An unknown name results in [`Labels::Given`].
+    pub fn from_name(name: &str) -> Self {
+        Self::ALL.into_iter().find(|labels| labels.name() == name).unwrap_or_default()
+    }
+
+    /// Returns the name of the condition.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// Returns the number of label inputs.
+    pub fn inputs(self) -> usize {
+        if self == Self::None { 0 } else { LABELS }
+    }
+
+    /// Returns the number of outputs for labels.
+    pub fn outputs(self) -> usize {
+        if self == Self::Own { LABELS } else { 0 }
+    }
+}
+
 /// The complete configuration of the experiment. The defaults are those of the specification.
 ///
 /// Lengths are in meters, angles in degrees, and all other quantities in SI units unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// If true, the network receives a label for the current phase. This is condition A (`labels`). Condition B is
-    /// `no-labels`.
-    pub labels: bool,
+    /// Source of the label inputs.
+    pub labels: Labels,
     /// Physics engine that simulates the robot.
     pub engine: Engine,
     /// Duration of a control step (in seconds).
     pub time_step: f64,
-    /// Number of dynamics steps in each control step.
+    /// Number of dynamics steps in each control step. In rapier there are twice as many, because it halves none.
     pub substeps: u32,
     /// Downward acceleration of gravity (in m/s2).
     pub gravity: f64,
@@ -114,7 +163,7 @@ pub struct Config {
     pub contact_damping: f64,
     /// Number of contacts at which a touch sensor is saturated.
     pub touch_saturation: f64,
-    /// Value of the label input for the current phase.
+    /// Value of the label input for the current phase. For [`Labels::Own`] it is a factor of the outputs for labels.
     pub label_amplitude: f64,
     /// Axes of the sensors for the position of the sphere.
     pub target_axes: Axes,
@@ -134,10 +183,10 @@ impl Default for Config {
     fn default() -> Self {
         let (arm, table, options) = (ArmAndHand::default(), Tabletop::default(), Options::default());
         Self {
-            labels: true,
+            labels: Labels::default(),
             engine: Engine::default(),
             time_step: options.time_step,
-            substeps: options.substeps,
+            substeps: 2,
             gravity: -options.gravity[2],
             sweeps: options.sweeps,
             slip: options.friction_compliance,
@@ -188,8 +237,8 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Returns the default configuration. Set `labels` to true for condition A and to false for condition B.
-    pub fn for_condition(labels: bool) -> Self {
+    /// Returns the default configuration of a condition.
+    pub fn for_condition(labels: Labels) -> Self {
         Self { labels, ..Self::default() }
     }
 
@@ -252,7 +301,8 @@ impl Config {
     pub fn rapier_options(&self) -> farsa_physics::rapier::Options {
         farsa_physics::rapier::Options {
             time_step: self.time_step,
-            substeps: self.substeps,
+            // Its steps are not halved where links are fast, so all of them are as short as our halves.
+            substeps: 2 * self.substeps,
             gravity: [0.0, 0.0, -self.gravity],
             ..farsa_physics::rapier::Options::default()
         }
@@ -267,14 +317,16 @@ impl Config {
             sweeps: self.sweeps,
             friction_compliance: self.slip,
             limit_frequency: self.limit_frequency,
+            path_error: Some(PATH_ERROR),
             ..Options::default()
         }
     }
 
-    /// Returns the layout of the network, with 23 outputs. It has 29 sensors with labels and 26 sensors without.
+    /// Returns the layout of the network. It has 29 sensors with labels and 26 sensors without. There are 26 outputs for
+    /// [`Labels::Own`] and 23 outputs otherwise.
     pub fn layout(&self) -> LeakyLayout {
-        let sensors = if self.labels { 29 } else { 26 };
-        LeakyLayout::new(sensors, self.hidden as usize, 23).with_slope(self.slope as f32)
+        let (sensors, outputs) = (PLAIN_SENSORS + self.labels.inputs(), OUTPUTS + self.labels.outputs());
+        LeakyLayout::new(sensors, self.hidden as usize, outputs).with_slope(self.slope as f32)
     }
 
     /// Returns the number of control steps per second. It is at least one.
@@ -295,7 +347,10 @@ mod tests {
         assert_eq!(ArmAndHand { servo: default.servo, ..arm }, default);
         assert_eq!(config.tabletop(), Tabletop::default());
         assert_eq!(config.layout().parameter_count(), 792);
-        assert_eq!(Config::for_condition(false).layout().parameter_count(), 756);
+        assert_eq!(Config::for_condition(Labels::None).layout().parameter_count(), 756);
+        // 29 and 12 inputs and a bias and a leak for each hidden neuron, 12 inputs for each of the 26 outputs.
+        let own = Config::for_condition(Labels::Own).layout();
+        assert_eq!((own.sensors(), own.outputs(), own.parameter_count()), (29, 26, 43 * 12 + 12 * 26));
         let undamped = Config { damping: 0.0, ..Config::default() };
         assert_eq!(undamped.arm().robot().unwrap().segments[0].joint.damping, 0.0);
     }

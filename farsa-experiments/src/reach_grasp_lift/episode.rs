@@ -8,9 +8,10 @@ use farsa_body::ports::{
 use farsa_lab::{Episode, EpisodeId, Error};
 use farsa_nn::Controller;
 
+use crate::reach_grasp_lift::config::{LABELS, OUTPUTS};
 use crate::reach_grasp_lift::fitness::{Rewards, Trial};
 use crate::reach_grasp_lift::phase::Observation;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene, Senses};
+use crate::reach_grasp_lift::scene::{Motors, Scene, Senses};
 
 /// Observes every step of a trial, collects the reward and decides when the trial ends.
 #[derive(Clone, Debug)]
@@ -102,14 +103,14 @@ pub struct ReachEpisode<C> {
     motors: Motors,
     controller: C,
     x: Vec<f32>,
-    y: [f32; OUTPUTS],
+    y: Vec<f32>,
     /// The label is that of the next phase, of lift that of reach.
     wrong_label: bool,
 }
 
 impl<C: Controller> ReachEpisode<C> {
-    /// Creates an episode for a controller. Its inputs and outputs must match the channels of the sensors and the
-    /// motors.
+    /// Creates an episode for a controller. Its inputs must match the channels of the sensors. Its outputs must match
+    /// the channels of the motors, followed by 3 labels for [`Labels::Own`](crate::reach_grasp_lift::Labels::Own).
     ///
     /// # Errors
     /// Returns [`Error::Other`] if the controller has a different number of inputs or outputs, or if the sensors of the
@@ -117,15 +118,17 @@ impl<C: Controller> ReachEpisode<C> {
     pub fn new(scene: Arc<Scene>, controller: C) -> Result<Self, Error> {
         let (senses, motors) = (scene.senses()?, scene.motors()?);
         let (inputs, outputs) = (controller.inputs(), controller.outputs());
-        if inputs != senses.channels() || outputs != motors.channels() {
+        let labels = scene.config.labels.outputs();
+        if inputs != senses.channels() || outputs != motors.channels() + labels {
+            let also = if labels == 0 { String::new() } else { format!(" and {labels} labels") };
             return Err(Error::Other(format!(
-                "reach-grasp-lift: a controller of {inputs} inputs and {outputs} outputs for {} sensors and {} motors",
+                "reach-grasp-lift: a controller of {inputs} inputs and {outputs} outputs for {} sensors and {} motors{also}",
                 senses.channels(),
                 motors.channels()
             )));
         }
-        let x = vec![0.0; senses.channels()];
-        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y: [0.0; OUTPUTS], wrong_label: false })
+        let (x, y) = (vec![0.0; inputs], vec![0.0; outputs]);
+        Ok(Self { judge: Judge::new(scene), senses, motors, controller, x, y, wrong_label: false })
     }
 
     /// Gets the judge of the trial.
@@ -164,9 +167,15 @@ impl<C: Controller> ReachEpisode<C> {
         &self.x
     }
 
-    /// Gets the 23 motor values of the last step.
+    /// Gets the outputs of the last step. These are the 23 motor values, followed by the 3 labels of the next step for
+    /// [`Labels::Own`](crate::reach_grasp_lift::Labels::Own).
     pub fn done(&self) -> &[f32] {
         &self.y
+    }
+
+    /// The outputs of the last step for labels.
+    fn next_labels(&self) -> Option<[f32; LABELS]> {
+        self.y.get(OUTPUTS..)?.first_chunk().copied()
     }
 }
 
@@ -186,15 +195,19 @@ where
         self.controller.reset();
         self.senses.reset();
         self.motors.reset();
+        self.y.fill(0.0);
     }
 
-    /// Senses, computes and acts. The label is the phase after the previous step.
+    /// Senses, computes and acts. The label is the phase after the previous step, or an output of the previous step.
     fn act(&mut self, world: &mut W) {
         let phase = self.judge.trial().phase;
         self.senses.set_label(if self.wrong_label { phase.following() } else { phase });
+        if let Some(labels) = self.next_labels() {
+            self.senses.set_own_labels(labels);
+        }
         self.senses.read(world, &mut self.x);
         self.controller.step(&self.x, &mut self.y);
-        self.motors.drive(&self.y, world);
+        self.motors.drive(&self.y[..OUTPUTS], world);
     }
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {

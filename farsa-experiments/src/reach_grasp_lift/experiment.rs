@@ -2,7 +2,7 @@
 
 use farsa_physics::articulated::{Batch, Model, World};
 
-use crate::reach_grasp_lift::config::Config;
+use crate::reach_grasp_lift::config::{Config, Labels};
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::task::ReachTask;
 use crate::worlds::Engine;
@@ -13,15 +13,11 @@ use farsa_lab::{Error, Evaluator, Experiment, InWorld, Setting, Settings};
 ///
 /// A simulated arm and hand, similar to those of the iCub, evolve to reach for a sphere, grasp it and lift it. With the
 /// condition `labels` (A), three additional inputs indicate the phase of the task. The condition `no-labels` (B)
-/// removes these inputs. All values that the source does not specify are settings. They also state the reasons for the
-/// choice. See [`Config`] for a list.
+/// removes these inputs. With the condition `self-labels`, they are outputs of the network in the previous step. All
+/// values that the source does not specify are settings. They also state the reasons for the choice. See [`Config`] for
+/// a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ReachGraspLift;
-
-/// Condition A.
-const LABELS: &str = "labels";
-/// Condition B.
-const NO_LABELS: &str = "no-labels";
 
 impl Experiment for ReachGraspLift {
     fn name(&self) -> &'static str {
@@ -33,20 +29,20 @@ impl Experiment for ReachGraspLift {
     }
 
     fn conditions(&self) -> &'static [&'static str] {
-        &[LABELS, NO_LABELS]
+        &Labels::NAMES
     }
 
-    // 2: contacts of palm and table are those of two boxes.
+    // 2: contacts of palm and table are those of two boxes. 3: dynamics steps of 5 ms in halves, and sweeps that settle.
     fn values_version(&self) -> u32 {
-        2
+        3
     }
 
     fn settings(&self, condition: &str) -> Vec<Setting> {
-        Config::for_condition(condition != NO_LABELS).table()
+        Config::for_condition(Labels::from_name(condition)).table()
     }
 
     fn prepare(&self, condition: &str, settings: &Settings) -> Result<Box<dyn Evaluator>, Error> {
-        let config = Config::read(condition != NO_LABELS, settings)?;
+        let config = Config::read(Labels::from_name(condition), settings)?;
         match config.engine {
             Engine::Articulated => Ok(Box::new(evaluator(config)?)),
             #[cfg(feature = "rapier")]
@@ -103,24 +99,26 @@ mod tests {
     }
 
     #[test]
-    fn both_conditions_have_the_sizes_of_the_source() {
-        for (condition, sensors, parameters) in [(LABELS, 29, 792), (NO_LABELS, 26, 756)] {
+    fn the_conditions_have_their_sizes() {
+        // The numbers of parameters of the first two are those of the source.
+        let sizes = [("labels", 29, 23, 792), ("no-labels", 26, 23, 756), ("self-labels", 29, 26, 828)];
+        for (condition, sensors, outputs, parameters) in sizes {
             let settings = Settings::new(ReachGraspLift.settings(condition)).unwrap();
             let evaluator = ReachGraspLift.prepare(condition, &settings).unwrap();
             assert_eq!(evaluator.info().parameters.len(), parameters);
             let description = evaluator.info().description;
             assert_eq!(description.parameters, parameters);
             assert_eq!(description.sensors.iter().map(|group| group.count).sum::<usize>(), sensors);
-            assert_eq!(description.motors.iter().map(|group| group.count).sum::<usize>(), 23);
+            assert_eq!(description.motors.iter().map(|group| group.count).sum::<usize>(), outputs);
             assert_eq!((description.steps, description.step_seconds), (600, 0.01));
-            assert_eq!(evaluator.info().schema.columns().len(), SCALARS + sensors + 12 + 23);
+            assert_eq!(evaluator.info().schema.columns().len(), SCALARS + sensors + 12 + outputs);
         }
     }
 
     #[test]
     fn an_episode_can_be_repeated_and_recorded() {
-        let settings = Settings::new(ReachGraspLift.settings(LABELS)).unwrap();
-        let mut evaluator = ReachGraspLift.prepare(LABELS, &settings).unwrap();
+        let settings = Settings::new(ReachGraspLift.settings("labels")).unwrap();
+        let mut evaluator = ReachGraspLift.prepare("labels", &settings).unwrap();
         let genes: Vec<u16> = (0..792u32).map(|i| (i * 40503) as u16).collect();
         let genotype = Genotype::new(&evaluator.info().parameters, ReachGraspLift.gene_bits());
         let parameters = genotype.decode(&genes).unwrap();

@@ -9,6 +9,7 @@ use farsa_lab::exports::{
     SensorReading, ServoExport, StartExport, SurfaceExport,
 };
 
+use crate::reach_grasp_lift::config::{Labels, OUTPUTS, PLAIN_SENSORS};
 use crate::reach_grasp_lift::phase::Phase;
 use crate::reach_grasp_lift::scene::{Scene, TARGET_SCALE};
 
@@ -18,7 +19,7 @@ impl Scene {
         &self,
         network: NetworkExport,
         sensors: Vec<String>,
-        motors: Vec<String>,
+        outputs: Vec<String>,
     ) -> ControllerExport {
         let actuators = self.robot.actuators.iter().map(|actuator| ActuatorExport {
             name: actuator.name.clone(),
@@ -26,7 +27,7 @@ impl Scene {
             law: actuator.law,
         });
         let sensors = sensors.into_iter().zip(self.readings());
-        let motors = motors.into_iter().zip(self.drives());
+        let motors = outputs.into_iter().zip(self.drives());
         ControllerExport {
             network,
             sensors: sensors.map(|(name, reads)| SensorExport { name, reads }).collect(),
@@ -67,12 +68,15 @@ impl Scene {
             scale: TARGET_SCALE,
         });
         let amplitude = config.label_amplitude as f32;
-        let phases = Phase::ALL.into_iter().filter(|_| config.labels);
-        let labels = phases.map(|phase| SensorReading::Label { phase: phase.name(), amplitude });
+        let labels = Phase::ALL.into_iter().filter_map(|phase| match config.labels {
+            Labels::Given => Some(SensorReading::Label { phase: phase.name(), amplitude }),
+            Labels::None => None,
+            Labels::Own => Some(SensorReading::PreviousOutput { channel: OUTPUTS + phase.index(), scale: amplitude }),
+        });
         joints.chain(patches).chain(way).chain(labels).collect()
     }
 
-    /// The quantity that every motor channel drives, in the order of [`Scene::motors`].
+    /// The quantity that every output drives, in the order of [`Scene::output_names`].
     fn drives(&self) -> Vec<MotorDrive> {
         let muscles = (0..7).flat_map(|i| [0, 1].map(|muscle| (ActuatorId(i), muscle)));
         let muscles = muscles.map(|(pair, muscle)| MotorDrive::Muscle { actuator: self.actuator_name(pair), muscle });
@@ -81,7 +85,8 @@ impl Scene {
             let servos = servos.map(|s| ServoExport { actuator: self.actuator_name(s.servo), from: s.from, to: s.to });
             MotorDrive::Servos { servos: servos.collect() }
         });
-        muscles.chain(groups).collect()
+        let labels = (0..self.config.labels.outputs()).map(|n| MotorDrive::NextInput { channel: PLAIN_SENSORS + n });
+        muscles.chain(groups).chain(labels).collect()
     }
 
     fn surfaces(&self) -> Vec<SurfaceExport> {
@@ -147,12 +152,11 @@ mod tests {
     use farsa_physics::articulated::{Model, World};
 
     use crate::reach_grasp_lift::config::Config;
-    use crate::reach_grasp_lift::scene::OUTPUTS;
 
     fn described(scene: &Scene, parameters: &[f32]) -> ControllerExport {
         let layout = scene.config.layout();
         let network = NetworkExport::leaky(&layout, Leak::Filter, parameters);
-        scene.controller(network, scene.senses().unwrap().names(), scene.motors().unwrap().names())
+        scene.controller(network, scene.senses().unwrap().names(), scene.output_names(&scene.motors().unwrap()))
     }
 
     fn at(scene: &Scene, world: &World<f32>, point: &PointExport) -> [f64; 3] {
@@ -224,7 +228,7 @@ mod tests {
 
     #[test]
     fn the_description_alone_senses_and_drives_as_the_scene_does() {
-        for config in [Config::default(), Config { target_axes: Axes::World, ..Config::for_condition(false) }] {
+        for config in [Config::default(), Config { target_axes: Axes::World, ..Config::for_condition(Labels::None) }] {
             let scene = Scene::new(config).unwrap();
             let exported = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
             let (mut senses, mut motors) = (scene.senses().unwrap(), scene.motors().unwrap());
@@ -265,6 +269,23 @@ mod tests {
                 world.step();
             }
             assert!(touched > 20, "only {touched} touches were compared");
+        }
+    }
+
+    #[test]
+    fn own_labels_are_described_as_outputs_of_the_previous_step() {
+        for label_amplitude in [1.0, 50.0] {
+            let scene = Scene::new(Config { label_amplitude, ..Config::for_condition(Labels::Own) }).unwrap();
+            let exported = described(&scene, &vec![0.0; scene.config.layout().parameter_count()]);
+            assert_eq!([exported.sensors.len(), exported.motors.len()], exported.network.shape());
+            for n in 0..3 {
+                let (sensor, motor) = (&exported.sensors[26 + n], &exported.motors[23 + n]);
+                let names = [format!("label {}", n + 1), format!("next label {}", n + 1)];
+                assert_eq!([&sensor.name, &motor.name], [&names[0], &names[1]]);
+                let scale = label_amplitude as f32;
+                assert_eq!(sensor.reads, SensorReading::PreviousOutput { channel: 23 + n, scale });
+                assert_eq!(motor.drives, MotorDrive::NextInput { channel: 26 + n });
+            }
         }
     }
 

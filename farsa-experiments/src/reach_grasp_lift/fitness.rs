@@ -62,11 +62,22 @@ pub struct Judgement {
     /// Height above the table that the center of the sphere must reach in a successful lift (in centimeters). The
     /// default is 5. Without this limit, a sphere on a hand that rests on the table would also count as lifted.
     pub success_height: f64,
+    /// Least height above the table that the center of the sphere must have for the reward of a lift step (in meters).
+    /// The default is 0, which rewards lifting at any height, as printed.
+    pub lift_height: f64,
 }
 
 impl Default for Judgement {
     fn default() -> Self {
-        Self { contact_term: ContactTerm::default(), success_height: 5.0 }
+        Self { contact_term: ContactTerm::default(), success_height: 5.0, lift_height: 0.0 }
+    }
+}
+
+impl Judgement {
+    /// Returns true if a lift step with the given observation is rewarded.
+    pub fn rewards_lift(&self, seen: &Observation) -> bool {
+        // Without a limit, heights below the table top count, too.
+        seen.lifted() && (self.lift_height == 0.0 || seen.height >= 100.0 * self.lift_height)
     }
 }
 
@@ -77,7 +88,8 @@ pub struct Rewards {
     pub reach: f64,
     /// Term FG, the sum of 0.4/(1 + graspQ) and the contact term over all grasp steps.
     pub grasp: f64,
-    /// Term FL, the number of lift steps in which the fingers touched the sphere and the table did not.
+    /// Term FL, the number of lift steps in which the fingers touched the sphere and the table did not, at a height of
+    /// at least [`Judgement::lift_height`].
     pub lift: f64,
     /// Sum of the bonuses of all trials that have ended.
     pub bonus: f64,
@@ -85,7 +97,7 @@ pub struct Rewards {
 
 impl Rewards {
     /// Computes the reward of one step in the given phase \[Ferrauto2010, 2.3.4\].
-    pub fn from_step(phase: Phase, seen: &Observation, term: ContactTerm) -> Self {
+    pub fn from_step(phase: Phase, seen: &Observation, by: &Judgement) -> Self {
         let mut earned = Self::default();
         match phase {
             Phase::Reach => {
@@ -95,8 +107,10 @@ impl Rewards {
                 earned.reach = 0.5 / (1.0 + ds / 4.0) + 0.25 / (1.0 + ds) * (seen.openness + seen.palm_down);
             }
             // graspQ is in centimeters. Every contact term is at most 0.2, so a step earns at most 0.6.
-            Phase::Grasp => earned.grasp = 0.4 / (1.0 + seen.grasp_distance) + term.value(seen.contacts),
-            Phase::Lift => earned.lift = if seen.lifted() { 1.0 } else { 0.0 },
+            Phase::Grasp => {
+                earned.grasp = 0.4 / (1.0 + seen.grasp_distance) + by.contact_term.value(seen.contacts);
+            }
+            Phase::Lift => earned.lift = if by.rewards_lift(seen) { 1.0 } else { 0.0 },
         }
         earned
     }
@@ -148,7 +162,7 @@ impl Trial {
     /// phase is already rewarded according to the new phase.
     pub fn judge(&mut self, seen: &Observation, by: &Judgement) -> Rewards {
         self.phase = self.phase.next(seen);
-        let earned = Rewards::from_step(self.phase, seen, by.contact_term);
+        let earned = Rewards::from_step(self.phase, seen, by);
         self.rewards.add(&earned);
         self.steps += 1;
         // Both counters restart at 0 in a step without lifting, so they count consecutive steps up to the last one.
@@ -239,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_reach_step_pays_for_nearness_open_hand_and_palm_down() {
-        let step = |seen: &Observation| Rewards::from_step(Phase::Reach, seen, ContactTerm::Capped).reach;
+        let step = |seen: &Observation| Rewards::from_step(Phase::Reach, seen, &Judgement::default()).reach;
         near(step(&best_reach()), 1.0);
         // 0.5/(1 + 9) + 0.25/37 * 2
         near(step(&far_away()), 0.05 + 0.5 / 37.0);
@@ -251,7 +265,7 @@ mod tests {
     #[test]
     fn a_grasp_step_pays_for_nearness_and_contacts() {
         let step = |term, grasp_distance, contacts| {
-            Rewards::from_step(Phase::Grasp, &Observation { grasp_distance, contacts, ..far_away() }, term).grasp
+            Rewards::from_step(Phase::Grasp, &Observation { grasp_distance, contacts, ..far_away() }, &by(term)).grasp
         };
         near(step(ContactTerm::Capped, 0.0, 4), 0.6);
         near(step(ContactTerm::Capped, 0.0, 9), 0.6);
@@ -267,9 +281,38 @@ mod tests {
     #[test]
     fn a_lift_step_pays_when_the_sphere_is_on_the_fingers_and_off_the_table() {
         let step = |contacts, on_table| {
-            Rewards::from_step(Phase::Lift, &Observation { contacts, on_table, ..far_away() }, ContactTerm::Capped).lift
+            let seen = Observation { contacts, on_table, ..far_away() };
+            Rewards::from_step(Phase::Lift, &seen, &Judgement::default()).lift
         };
         assert_eq!([step(1, false), step(1, true), step(0, false), step(0, true)], [1.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_lift_step_below_the_height_for_lifting_pays_nothing() {
+        let step = |lift_height, height, on_table| {
+            let seen = Observation { contacts: 4, on_table, height, ..far_away() };
+            Rewards::from_step(Phase::Lift, &seen, &Judgement { lift_height, ..Judgement::default() }).lift
+        };
+        assert_eq!([4.999, 5.0, 40.0].map(|height| step(0.05, height, false)), [0.0, 1.0, 1.0]);
+        assert_eq!(step(0.05, 40.0, true), 0.0);
+        // As printed, also when the hand holds the sphere beyond the edge of the table and below its top.
+        assert_eq!([-0.1, 0.0, 3.0].map(|height| step(0.0, height, false)), [1.0; 3]);
+    }
+
+    #[test]
+    fn the_height_for_lifting_changes_no_other_term() {
+        let low = Observation { height: 3.0, ..best_lift() };
+        let steps = sequence(&[(far_away(), 5), (best_grasp(), 5), (low, 20), (best_lift(), 10)]);
+        let [printed, high] = [0.0, 0.05].map(|lift_height| {
+            let (by, mut trial) = (Judgement { lift_height, ..Judgement::default() }, Trial::default());
+            for seen in &steps {
+                trial.judge(seen, &by);
+            }
+            trial
+        });
+        // One low step is still in the phase grasp.
+        assert_eq!([printed.rewards.lift, high.rewards.lift], [30.0, 10.0]);
+        assert_eq!(Trial { rewards: Rewards { lift: 30.0, ..high.rewards }, ..high }, printed);
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 /// The values of `reach-grasp-lift` and what is built from them.
 pub(crate) mod config;
+/// The settings of `reach-grasp-lift` with their limits, units, sources and reasons.
+mod entries;
 /// An episode of `reach-grasp-lift`: one trial, from the start to the last step or the sphere's fall.
 pub(crate) mod episode;
 /// Its name, conditions and settings, and what runs its trials.
@@ -22,19 +24,19 @@ pub(crate) mod scene;
 mod schema;
 /// A grasp by script: what the task asks of arm, hand and contacts, shown without evolution.
 pub(crate) mod script;
-/// Every value of `reach-grasp-lift` as a setting: its key, limits, unit, source and reason.
+/// The configuration of `reach-grasp-lift` from settings, and as settings.
 mod settings;
 /// The description of `reach-grasp-lift`, and its episodes over parameters.
 pub(crate) mod task;
 
 pub use crate::worlds::Engine;
-pub use config::{Config, Displacement, SphereFrame, TRIALS};
+pub use config::{Config, Displacement, Labels, OUTPUTS, SphereFrame, TRIALS};
 pub use episode::{Judge, ReachEpisode};
 #[cfg(feature = "rapier")]
 pub use experiment::evaluator_in_rapier;
 pub use experiment::{ReachGraspLift, evaluator};
 pub use fitness::{ContactTerm, GRASP_CAP, Judgement, LIFT_CAP, REACH_CAP, Rewards, Trial};
 pub use phase::{Observation, Phase};
-pub use scene::{Motors, OUTPUTS, Scene, Senses};
+pub use scene::{Motors, Scene, Senses};
 pub use script::{GraspPlan, ScriptEpisode, Statics, Timetable};
 pub use task::ReachTask;

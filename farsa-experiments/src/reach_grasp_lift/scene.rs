@@ -14,16 +14,11 @@ use farsa_lab::{EpisodeId, Error};
 use farsa_models::mjcf::{Keyframe, MjcfOptions};
 use farsa_num::{Domain, Scalar, Stream};
 
-use crate::reach_grasp_lift::config::{Config, Displacement, TRIALS};
+use crate::reach_grasp_lift::config::{Config, Displacement, LABELS, Labels, OUTPUTS, PLAIN_SENSORS, TRIALS};
 use crate::reach_grasp_lift::phase::{Observation, Phase};
 
-/// Sensor channels without the labels.
-const PLAIN_SENSORS: usize = 26;
 /// Units per meter of the sphere's position: centimeters.
 pub(crate) const TARGET_SCALE: f32 = 100.0;
-/// Number of output channels. There is an activation for each of the 14 muscles, and a position for each of the 9
-/// servo groups.
-pub const OUTPUTS: usize = 23;
 
 /// The joints of the hand that are sensed, one of every linked group.
 const SENSED_HAND_JOINTS: [usize; 10] = [8, 9, 10, 13, 14, 17, 18, 21, 22, 16];
@@ -53,13 +48,15 @@ pub struct Scene {
 ///
 /// The first 17 channels are proprioceptors for the joints J1..J7, J8, J9, J10, J13, J14, J17, J18, J21, J22 and J16.
 /// They are followed by 6 tactile sensors on the thumb, the four other fingers from index to little finger, and the
-/// palm. Then come 3 channels for the position of the sphere relative to the palm, in centimeters, and 3 labels.
+/// palm. Then come 3 channels for the position of the sphere relative to the palm, in centimeters, and 3 labels. A
+/// label indicates a phase, or repeats an output of the network for [`Labels::Own`].
 ///
 /// Deviations: the page that contains the source's list is not available. The ten hand joints and the scales were
 /// therefore chosen. Touch sensors respond to all sides of a phalanx and not only to the inner side.
 #[derive(Clone, Debug)]
 pub struct Senses {
-    parts: (Vec<JointPosition>, TouchPatches, TargetPosition, Option<Signal<3>>),
+    parts: (Vec<JointPosition>, TouchPatches, TargetPosition, Option<Signal<LABELS>>),
+    labels: Labels,
     label_amplitude: f32,
 }
 
@@ -115,8 +112,20 @@ impl Scene {
         let palm = Point { body: ArmAndHand::PALM, at: self.arm.palm_centre.map(|x| x as f32) };
         let target = TargetPosition::new(Point::origin(Tabletop::SPHERE), palm, self.config.target_axes, TARGET_SCALE);
         let label_amplitude = self.config.label_amplitude as f32;
-        let label = self.config.labels.then(|| Signal::one_hot(Phase::Reach.index(), label_amplitude));
-        Ok(Senses { parts: (joints, patches, target.map_err(wrong_channel)?, label), label_amplitude })
+        let labels = self.config.labels;
+        let label = match labels {
+            Labels::Given => Some(Signal::one_hot(Phase::Reach.index(), label_amplitude)),
+            Labels::None => None,
+            Labels::Own => Some(Signal::new([0.0; LABELS])),
+        };
+        Ok(Senses { parts: (joints, patches, target.map_err(wrong_channel)?, label), labels, label_amplitude })
+    }
+
+    /// Returns the names of the network's outputs. These are the motors, and for [`Labels::Own`] the labels of the next
+    /// step.
+    pub(crate) fn output_names(&self, motors: &Motors) -> Vec<String> {
+        let labels = (1..=self.config.labels.outputs()).map(|n| format!("next label {n}"));
+        motors.names().into_iter().chain(labels).collect()
     }
 
     /// Creates the motors of the robot.
@@ -293,10 +302,19 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Senses {
-    /// Sets the phase that the labels will indicate in the next reading. Without labels it has no effect.
+    /// Sets the phase that the labels will indicate in the next reading. It has no effect unless the labels are
+    /// [`Labels::Given`].
     pub fn set_label(&mut self, phase: Phase) {
-        if let Some(label) = &mut self.parts.3 {
+        if let (Labels::Given, Some(label)) = (self.labels, &mut self.parts.3) {
             label.set_one_hot(phase.index(), self.label_amplitude);
+        }
+    }
+
+    /// Sets the labels of the next reading from the outputs for labels. It has no effect unless the labels are
+    /// [`Labels::Own`].
+    pub fn set_own_labels(&mut self, outputs: [f32; 3]) {
+        if let (Labels::Own, Some(label)) = (self.labels, &mut self.parts.3) {
+            label.set(outputs.map(|output| self.label_amplitude * output));
         }
     }
 
@@ -305,8 +323,11 @@ impl Senses {
         let joints = (1..=7).chain(SENSED_HAND_JOINTS).map(|n| format!("J{n}"));
         let touch = ["thumb", "index", "middle", "ring", "little", "palm"].map(|part| format!("touch {part}"));
         let target = ["x", "y", "z"].map(|axis| format!("sphere {axis} [cm]"));
-        let labels = Phase::ALL.map(|phase| format!("label {}", phase.name()));
-        let labels = labels.into_iter().filter(|_| self.parts.3.is_some());
+        let labels = match self.labels {
+            Labels::Given => Phase::ALL.map(|phase| format!("label {}", phase.name())).to_vec(),
+            Labels::None => Vec::new(),
+            Labels::Own => (1..=LABELS).map(|n| format!("label {n}")).collect(),
+        };
         joints.chain(touch).chain(target).chain(labels).collect()
     }
 }

@@ -131,7 +131,7 @@ impl EpisodeRecorder {
             .collect();
         let mut schema = Schema::from_robot(&scene.robot)
             .with_sensors(episode.senses().names())
-            .with_outputs(episode.motors().names())
+            .with_outputs(scene.output_names(episode.motors()))
             .with_network(&scene.config.layout());
         schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
         let schema = Schema {

@@ -8,8 +8,9 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles
 use farsa_body::robots::{ArmAndHand, Tabletop};
 use farsa_lab::{Episode, EpisodeId, Error};
 
+use crate::reach_grasp_lift::config::OUTPUTS;
 use crate::reach_grasp_lift::episode::Judge;
-use crate::reach_grasp_lift::scene::{Motors, OUTPUTS, Scene};
+use crate::reach_grasp_lift::scene::{Motors, Scene};
 use crate::smooth::smooth;
 
 /// Postures with the palm exactly down, its center 5 cm above the sphere in its four places \[deg\]. The search for a

@@ -7,7 +7,7 @@ use farsa_body::ports::{Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles
 use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::LeakyNetwork;
 
-use crate::reach_grasp_lift::config::TRIALS;
+use crate::reach_grasp_lift::config::{LABELS, Labels, TRIALS};
 use crate::reach_grasp_lift::episode::ReachEpisode;
 use crate::reach_grasp_lift::fitness::Rewards;
 use crate::reach_grasp_lift::parameters::Ranges;
@@ -49,7 +49,8 @@ impl ReachTask {
     }
 
     /// `start-positions` has every posture of the arm with every place of the sphere, of which four pairs were trained.
-    /// `labels`, where there are any, has the right one, none, and those of another phase. Then come `lesions`.
+    /// `labels`, where there are any, has the right one, none, and those of another phase if they are given. Then come
+    /// `lesions`.
     fn interventions(&self) -> Interventions {
         let config = &self.scene().config;
         let groups = self.description().sensors;
@@ -64,8 +65,14 @@ impl ReachTask {
         let hidden = (0..config.layout().hidden()).map(|neuron| (format!("hidden neuron {}", neuron + 1), neuron));
         let mut interventions = Interventions::default().with_protocol(starts, Vec::new());
         if let Some((_, labels)) = input_ranges(&groups).find(|(name, _)| name == "label") {
-            let cases = ["as trained", "removed", "of the next phase"];
-            let protocol = Protocol::from_list("labels", "the label of the phase is removed, or wrong", cases);
+            let given = config.labels == Labels::Given;
+            let cases = &["as trained", "removed", "of the next phase"][..if given { 3 } else { 2 }];
+            let about = if given {
+                "the label of the phase is removed, or wrong"
+            } else {
+                "the labels of the network are removed"
+            };
+            let protocol = Protocol::from_list("labels", about, cases.iter().copied());
             let protocol = protocol.with_held_out(|row, _| row != cases[0]);
             interventions =
                 interventions.with_protocol(protocol, vec![Intervention::default(), Intervention::cut(labels)]);
@@ -177,11 +184,16 @@ impl ReachTask {
             ),
             ChannelGroup::new("sphere position", 3, "sphere's center relative to the palm's, x, y, z [cm]"),
         ];
-        if config.labels {
-            let meaning = format!("{} for the present phase (reach, grasp, lift), else 0", config.label_amplitude);
-            sensors.push(ChannelGroup::new("label", 3, &meaning));
-        }
-        let motors = vec![
+        let amplitude = config.label_amplitude;
+        let label = match config.labels {
+            Labels::Given => Some(format!("{amplitude} for the present phase (reach, grasp, lift), else 0")),
+            Labels::None => None,
+            Labels::Own => {
+                Some(format!("{amplitude} times the outputs `next label` of the previous step, 0 in the first"))
+            }
+        };
+        sensors.extend(label.map(|meaning| ChannelGroup::new("label", LABELS, &meaning)));
+        let mut motors = vec![
             ChannelGroup::new("muscles", 14, "activation of agonist and antagonist of J1..J7, 0..1"),
             ChannelGroup::new(
                 "servo groups",
@@ -190,6 +202,9 @@ impl ReachTask {
                  together, 1 flexed or spread",
             ),
         ];
+        if config.labels == Labels::Own {
+            motors.push(ChannelGroup::new("next label", LABELS, "labels of the next step, 0..1, which move nothing"));
+        }
         let layout = config.layout();
         let leak = config.leak.name();
         Description {
@@ -250,7 +265,8 @@ impl Exports for ReachTask {
         let config = &self.scene().config;
         let parameters = self.ranges.to_network(parameters);
         let network = NetworkExport::leaky(&config.layout(), config.leak, &parameters);
-        Some(self.scene().controller(network, self.episode.senses().names(), self.episode.motors().names()))
+        let outputs = self.scene().output_names(self.episode.motors());
+        Some(self.scene().controller(network, self.episode.senses().names(), outputs))
     }
 
     fn start(&self, id: EpisodeId) -> Option<StartExport> {

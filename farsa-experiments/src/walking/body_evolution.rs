@@ -169,6 +169,11 @@ impl Experiment for BodyEvolution {
         "body-evolution"
     }
 
+    // 2: sweeps of contacts that settle.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn summary(&self) -> &'static str {
         "legs, masses and soles of a walker evolve for the distance it walks, alone or with a small network at its hip"
     }

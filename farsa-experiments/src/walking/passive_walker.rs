@@ -116,6 +116,11 @@ impl Experiment for PassiveWalker {
         "passive-walker"
     }
 
+    // 2: sweeps of contacts that settle.
+    fn values_version(&self) -> u32 {
+        2
+    }
+
     fn summary(&self) -> &'static str {
         "two legs walk down a slope by themselves, compared with the simplest walking model; nothing evolves"
     }

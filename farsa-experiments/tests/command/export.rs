@@ -14,7 +14,7 @@ use crate::tool::{farsa, ok, own, say, scratch};
 fn the_robot_is_written_once() {
     let here = scratch("export");
     let printed = ok(farsa(), &here, "export robot reach-grasp-lift --format mjcf");
-    for part in ["name=\"J27\"", "<freejoint", "timestep=\"0.0025\"", "<key name=\"start4\"", "geom1=\"sphere\""] {
+    for part in ["name=\"J27\"", "<freejoint", "timestep=\"0.005\"", "<key name=\"start4\"", "geom1=\"sphere\""] {
         assert!(printed.contains(part), "no {part}");
     }
     let to_file = "export robot reach-grasp-lift --condition no-labels --format mjcf --out robot.xml";

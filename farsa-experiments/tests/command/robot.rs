@@ -7,7 +7,7 @@ use crate::tool::{farsa, ok, say, scratch};
 #[test]
 fn what_was_exported_is_told_and_written_again() {
     let here = scratch("robot");
-    ok(farsa(), &here, "export robot reach-grasp-lift --format mjcf --out hand.xml");
+    ok(farsa(), &here, "export robot reach-grasp-lift --set world.substeps=4 --format mjcf --out hand.xml");
     let told = ok(farsa(), &here, "robot hand.xml");
     for part in
         ["hand.xml: ", " 27 joints", "  J27 ", "left out or replaced:", "gravity 0 0 -9.81 m/s2", "option `timestep`"]

@@ -234,7 +234,7 @@ fn the_studies_of_the_repository_are_valid() {
         let study = study.to_str().expect("a path");
         let listed = json(&ok(farsa(), &here, &format!("sweep {study} --list --json")));
         let points = listed["points"].as_array().expect("a list");
-        let runs = points.iter().map(|point| point["replications"].as_u64().expect("a number"));
-        assert!(points.len() == 2 && runs.sum::<u64>() >= 20, "{study}: {listed}");
+        let mut runs = points.iter().map(|point| point["replications"].as_u64().expect("a number"));
+        assert!(!points.is_empty() && runs.all(|replications| replications >= 10), "{study}: {listed}");
     }
 }

@@ -13,6 +13,7 @@ use farsa_num::{Domain, Instructions, Stream};
 #[derive(Default)]
 struct Seen {
     sensors: Vec<Vec<f32>>,
+    outputs: Vec<Vec<f32>>,
     scalars: Vec<Vec<f64>>,
     /// Poses of the bodies, one of each at every step.
     poses: Vec<(BodyId, Pose<f32>)>,
@@ -21,6 +22,9 @@ struct Seen {
 impl Recorder for Seen {
     fn sensors(&mut self, values: &[f32]) {
         self.sensors.push(values.into());
+    }
+    fn outputs(&mut self, values: &[f32]) {
+        self.outputs.push(values.into());
     }
     fn scalars(&mut self, values: &[f64]) {
         self.scalars.push(values.into());
@@ -111,8 +115,9 @@ fn cases_in_lanes_are_those_alone_and_leave_nothing_behind() {
     in_lanes_as_alone(evaluator(&MinimalCognition, "", &[]), 99);
     let condition = FORAGING.conditions()[0];
     in_lanes_as_alone(evaluator(&FORAGING, condition, &[("trial.steps", Value::Whole(60))]), 99);
-    let condition = ReachGraspLift.conditions()[0];
-    in_lanes_as_alone(evaluator(&ReachGraspLift, condition, &[]), 3);
+    for condition in ["labels", "self-labels"] {
+        in_lanes_as_alone(evaluator(&ReachGraspLift, condition, &[]), 3);
+    }
 }
 
 #[test]
@@ -160,6 +165,35 @@ fn a_team_of_one_has_one_robot() {
     // The whole team is the plain trial.
     let whole = case(evaluator.as_ref(), "team-size", &all.to_string(), "");
     assert_eq!(seen(evaluator.as_mut(), whole, 0).0, seen(evaluator.as_mut(), None, 0).0);
+}
+
+#[test]
+fn own_labels_are_recorded_as_inputs_and_outputs_and_can_be_removed() {
+    let mut evaluator = evaluator(&ReachGraspLift, "self-labels", &[("trial.steps", Value::Whole(60))]);
+    let columns = evaluator.info().schema.columns();
+    for n in 1..=3 {
+        for name in [format!("sensor.label {n}"), format!("output.next label {n}")] {
+            assert_eq!(columns.iter().filter(|column| **column == name).count(), 1, "{name} in {columns:?}");
+        }
+    }
+    let (plain, spoken) = seen(evaluator.as_mut(), None, 1);
+    assert_eq!(spoken.sensors[0][26..], [0.0; 3]);
+    for (inputs, outputs) in spoken.sensors[1..].iter().zip(&spoken.outputs) {
+        assert!(inputs[26..].iter().zip(&outputs[23..]).all(|(input, output)| *input == 50.0 * output));
+        assert!(outputs[23..].iter().all(|label| *label > 0.0));
+    }
+    let removed = case(evaluator.as_ref(), "labels", "removed", "");
+    assert_ne!(seen(evaluator.as_mut(), removed, 1).0, plain);
+    let trained = case(evaluator.as_ref(), "labels", "as trained", "");
+    assert_eq!(seen(evaluator.as_mut(), trained, 1).0, plain);
+    // There is no phase that could be wrong.
+    let info = evaluator.info();
+    let protocol = info.protocols.iter().find(|protocol| protocol.name == "labels").unwrap();
+    assert_eq!(protocol.cases.len(), 2);
+    // A silent output for a label is a label of 0 in the next step.
+    let anatomy = info.anatomy.unwrap();
+    assert!(anatomy.intervention("output:next label 2").is_ok());
+    assert!(anatomy.intervention("sensor:label 2").is_ok());
 }
 
 #[test]

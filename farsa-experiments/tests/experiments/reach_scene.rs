@@ -9,7 +9,7 @@ use farsa_body::ports::{
 use farsa_body::robot::Shape;
 use farsa_body::robots::{ArmAndHand, Finger, Tabletop};
 use farsa_body::{Pose, Twist};
-use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, OUTPUTS, Phase, ReachEpisode, Scene};
+use farsa_experiments::reach_grasp_lift::{Config, Displacement, Judge, Labels, OUTPUTS, Phase, ReachEpisode, Scene};
 use farsa_lab::advanced::run_episode;
 use farsa_lab::{Episode, EpisodeId};
 use farsa_nn::{Controller, LeakyNetwork};
@@ -94,7 +94,7 @@ fn labels_name_the_phase_and_only_with_labels() {
         senses.read(&world, &mut x);
         assert_eq!(x[26..], label);
     }
-    let without = scene(Config::for_condition(false));
+    let without = scene(Config::for_condition(Labels::None));
     let mut senses = without.senses().unwrap();
     assert_eq!(senses.channels(), 26);
     assert_eq!(senses.names().len(), 26);
@@ -286,8 +286,8 @@ fn a_sphere_that_falls_ends_the_trial_and_what_was_earned_stays() {
         }
     };
     let trial = judge.trial();
-    // It falls 2.5 cm: sqrt(2 * 0.025 / 9.81) = 0.0714 s, seen after the eighth step.
-    assert_eq!((trial.steps, trial.fallen, trial.phase), (8, true, Phase::Reach));
+    // It falls 2.5 cm: sqrt(2 * 0.025 / 9.81) = 0.0714 s, less half a dynamics step, seen after the seventh step.
+    assert_eq!((trial.steps, trial.fallen, trial.phase), (7, true, Phase::Reach));
     assert!(fitness > 0.0 && fitness == trial.rewards.total());
     assert!(!judge.succeeds());
 }
@@ -338,9 +338,77 @@ fn a_controller_steps_once_a_step_and_reads_reach_first() {
     assert_eq!(run_episode(&mut episode, &mut world, EpisodeId::default(), None), fitness);
 }
 
+/// Returns 0 for motors, and a different value for every label in every step.
+struct Speaker {
+    /// Label inputs and label outputs of every step.
+    steps: Vec<[[f32; 3]; 2]>,
+}
+
+impl Controller for Speaker {
+    fn inputs(&self) -> usize {
+        29
+    }
+    fn outputs(&self) -> usize {
+        OUTPUTS + 3
+    }
+    fn reset(&mut self) {
+        self.steps.clear();
+    }
+    fn step(&mut self, x: &[f32], y: &mut [f32]) {
+        let step = self.steps.len() as f32;
+        let said = [0.1, 0.2, 0.3].map(|label| label + 0.01 * step);
+        self.steps.push([[x[26], x[27], x[28]], said]);
+        y.fill(0.0);
+        y[OUTPUTS..].copy_from_slice(&said);
+    }
+}
+
+#[test]
+fn own_labels_are_the_outputs_of_the_previous_step() {
+    let of_condition = Config { steps: 40, ..Config::for_condition(Labels::Own) };
+    for (amplitude, config) in
+        [(50.0, of_condition.clone()), (1.0, Config { label_amplitude: 1.0, ..of_condition.clone() })]
+    {
+        let scene = scene(config);
+        let mut world = world(&scene);
+        let mut episode = ReachEpisode::new(Arc::clone(&scene), Speaker { steps: Vec::new() }).expect("an episode");
+        // Also in a second trial, after the labels of the first.
+        for trial in 0..2 {
+            run_episode(&mut episode, &mut world, EpisodeId { trial, ..EpisodeId::default() }, None);
+            let steps = &episode.controller().steps;
+            assert_eq!((steps.len(), steps[0][0]), (40, [0.0; 3]));
+            for pair in steps.windows(2) {
+                assert_eq!(pair[1][0], pair[0][1].map(|said| amplitude * said));
+            }
+            assert_eq!(episode.done()[OUTPUTS..], steps[39][1]);
+        }
+    }
+    // The phase does not change them, and they do not change labels that are given.
+    for labels in [Labels::Own, Labels::Given] {
+        let scene = scene(Config::for_condition(labels));
+        let (mut senses, world, mut x) = (scene.senses().unwrap(), world(&scene), vec![f32::NAN; 29]);
+        senses.set_own_labels([0.1, 0.2, 0.3]);
+        if labels == Labels::Own {
+            senses.set_label(Phase::Lift);
+        }
+        senses.read(&world, &mut x);
+        let expected = if labels == Labels::Own { [0.1, 0.2, 0.3].map(|said| 50.0 * said) } else { [50.0, 0.0, 0.0] };
+        assert_eq!(x[26..], expected);
+    }
+}
+
+#[test]
+fn a_network_without_outputs_for_its_labels_is_refused() {
+    let error = ReachEpisode::new(scene(Config::for_condition(Labels::Own)), Listener(Vec::new()));
+    let error = error.err().expect("an error").to_string();
+    let expected =
+        "reach-grasp-lift: a controller of 29 inputs and 23 outputs for 29 sensors and 23 motors and 3 labels";
+    assert_eq!(error, expected);
+}
+
 #[test]
 fn a_network_of_another_shape_is_refused() {
-    let layout = Config::for_condition(false).layout();
+    let layout = Config::for_condition(Labels::None).layout();
     let network =
         LeakyNetwork::new(layout, farsa_nn::Leak::Filter, vec![0.0; 756], vec![0.0; layout.state_len()]).unwrap();
     let error = ReachEpisode::new(scene(Config::default()), network).unwrap_err().to_string();
