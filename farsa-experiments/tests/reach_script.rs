@@ -115,7 +115,7 @@ fn does_not_depend_on_one_set_of_values() {
         ("friction 1.5", Config { friction: 1.5, ..default.clone() }),
         ("cap 0.1 N m", Config { servo_force: 100.0, ..default.clone() }),
         ("cap 1 N m", Config { servo_force: 1000.0, ..default.clone() }),
-        ("2 substeps", Config { substeps: 2, ..default.clone() }),
+        ("4 substeps", Config { substeps: 4, ..default.clone() }),
         ("10 substeps", Config { substeps: 10, ..default.clone() }),
     ];
     let mut failed = Vec::new();

@@ -47,8 +47,10 @@ impl Place {
         }
         let name = then["experiment"].as_str().expect("a name");
         let known = farsa_experiments::all().into_iter().find(|one| one.name() == name);
-        // Experiments from files have the number that an experiment has when it gives none.
-        let experiment = known.map_or(1, farsa_lab::Experiment::values_version);
+        // Experiments from files have a number for each kind of world.
+        let config = fs::read_to_string(self.0.join("run/config.toml")).expect("a configuration");
+        let of_file = if config.contains("engine = \"articulated\"") { 2 } else { 1 };
+        let experiment = known.map_or(of_file, farsa_lab::Experiment::values_version);
         let versions = [
             ("FARSA's values".to_owned(), &then["values_version"], VALUES_VERSION),
             (format!("the values of {name}"), &then["experiment_version"], experiment),
