@@ -36,7 +36,7 @@ use crate::store::lineage::{HEADER, Lineage};
 use crate::store::log::{Log, header};
 use crate::store::manifest::Manifest;
 use crate::strategy::any_strategy::{AnyStrategy, Genome};
-use crate::sweep::SweepFile;
+use crate::sweep::Study;
 
 /// A reader of command lines. Creating it takes a hundred times as long as reading one.
 pub struct CommandLineReader(clap::Command);
@@ -64,12 +64,12 @@ pub fn read_configuration(laboratory: &Laboratory<'_>, text: &str) -> Result<Str
     Plan::from_file(laboratory, &ConfigFile::parse("config.toml", text)?)?.to_toml()
 }
 
-/// Reads the file of a sweep.
+/// Reads the file of a sweep or of checks.
 ///
 /// # Errors
 /// The error in the text.
 pub fn read_sweep(text: &str) -> Result<(), Error> {
-    SweepFile::parse("sweep.toml", text).map(drop)
+    Study::parse("sweep.toml", text, false).map(drop)
 }
 
 /// Reads a table of trials and writes it again.

@@ -5,6 +5,7 @@ mod attack;
 mod bad_input;
 mod broken_down;
 mod cases;
+mod checks;
 mod cluster;
 mod configurations;
 mod export;

@@ -233,6 +233,10 @@ fn the_studies_of_the_repository_are_valid() {
     for study in studies {
         let study = study.to_str().expect("a path");
         let listed = json(&ok(farsa(), &here, &format!("sweep {study} --list --json")));
+        if study.ends_with("all.toml") {
+            assert!(listed["checks"].is_array(), "{study}: {listed}");
+            continue;
+        }
         let points = listed["points"].as_array().expect("a list");
         let mut runs = points.iter().map(|point| point["replications"].as_u64().expect("a number"));
         assert!(!points.is_empty() && runs.all(|replications| replications >= 10), "{study}: {listed}");

@@ -6,6 +6,8 @@ mod arguments;
 mod behaviour;
 /// `--test` of `farsa run` and `farsa sweep`.
 mod champion_test;
+/// `farsa sweep` with a file of checks.
+mod checks;
 /// `main` for any set of experiments.
 pub mod cli;
 /// Connections of an experiment.

@@ -18,7 +18,7 @@ use crate::report::write;
 use crate::run::plan::Plan;
 use crate::run::summary::Summary;
 use crate::store::own_output::refuse_other;
-use crate::sweep::SweepFile;
+use crate::sweep::Study;
 use crate::sweep::work::{Found, Sweep};
 
 /// Results of a sweep, with its archive.
@@ -43,7 +43,11 @@ struct Archived {
 impl<'e> Invocation<'e, '_> {
     /// Makes or lists the runs of all points of a sweep, tests them, and reports and archives the finished ones.
     pub(super) fn sweep(&self, args: &SweepArgs) -> Result<(), Error> {
-        let (file, root, which) = (SweepFile::read(&args.file)?, args.root(), args.which());
+        let file = match Study::read(&args.file, args.quick)? {
+            Study::Sweep(file) => file,
+            Study::Checks(checks) => return self.checks(&checks, args),
+        };
+        let (root, which) = (args.root(), args.which());
         let sweep = Sweep::new(&file, self.laboratory, &root)?;
         if let Some(path) = &args.archive {
             let names = sweep.directories(which)?;

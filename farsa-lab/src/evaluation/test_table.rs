@@ -135,7 +135,7 @@ impl Table {
     ///
     /// # Errors
     /// Returns the fault as text.
-    pub(super) fn from_lines(lines: Vec<Vec<String>>, first: usize) -> Result<Self, String> {
+    pub(crate) fn from_lines(lines: Vec<Vec<String>>, first: usize) -> Result<Self, String> {
         let head = lines.first().map(|line| line.iter().map(String::as_str).collect::<Vec<_>>()).unwrap_or_default();
         if !head.starts_with(&HEAD) {
             return Err("is not the table of a test".into());
@@ -175,6 +175,18 @@ impl Table {
             Some(TestTrial { trial, steps, success: success == "true", fitness: fitness.parse().ok()? })
         };
         self.lines.iter().skip(1).filter_map(trial).collect()
+    }
+
+    /// Iterates over the names of the columns.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.lines.iter().take(1).flatten().map(String::as_str)
+    }
+
+    /// Parses the finite numbers of a column, or returns `None` for an unknown one.
+    pub(crate) fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let column = self.names().position(|other| other == name)?;
+        let fields: Vec<String> = self.lines.iter().skip(1).filter_map(|line| line.get(column).cloned()).collect();
+        Some(numbers(&fields))
     }
 
     /// Gets the lines, the head first.

@@ -17,6 +17,8 @@ pub(crate) mod log_curves;
 pub(crate) mod mann_whitney;
 /// Standard normal distribution.
 mod normal;
+/// Exact interval of a median.
+pub(crate) mod order_interval;
 /// A plane with two axes.
 mod plane;
 /// First two principal components.

@@ -89,8 +89,18 @@ impl ConfigFile {
             let key = key.map_or_else(String::new, |key| format!(" {}", Quoted(key)));
             Error::Usage(format!("{at}: {}{key}", error.message()))
         })?;
+        Self::from_table(name, table.get_ref(), &place, take)
+    }
+
+    /// Reads the keys of a table, as [`parse_beside`](Self::parse_beside) does. `place` returns the place of a byte.
+    pub(crate) fn from_table(
+        name: &str,
+        table: &DeTable<'_>,
+        place: &dyn Fn(usize) -> String,
+        take: &mut dyn FnMut(&FileKey<'_>) -> Result<bool, Error>,
+    ) -> Result<Self, Error> {
         let mut keys = Keys::default();
-        keys.collect(table.get_ref(), None);
+        keys.collect(table, None);
         // The table is in alphabetical order.
         keys.found.sort_unstable_by_key(|key| key.offset);
         let mut seen = BTreeSet::new();
@@ -111,7 +121,7 @@ impl ConfigFile {
                 continue;
             }
             let (key, at) = (keys.path(found), place(found.offset));
-            if take(&FileKey { key: &key, place: &at, value: found.value, places: &place })? {
+            if take(&FileKey { key: &key, place: &at, value: found.value, places: place })? {
                 continue;
             }
             let Some(value) = found.value else {
@@ -159,10 +169,27 @@ pub(crate) struct FileKey<'t> {
     /// `None` for an empty table.
     pub(crate) value: Option<&'t Spanned<DeValue<'t>>>,
     /// Returns the place of a byte of the file.
-    places: &'t dyn Fn(usize) -> String,
+    pub(crate) places: &'t dyn Fn(usize) -> String,
 }
 
-impl FileKey<'_> {
+impl<'t> FileKey<'t> {
+    /// Lists the tables of an array of tables with the places of their heads.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for any other value.
+    pub(crate) fn tables(&self) -> Result<Vec<(&'t DeTable<'t>, String)>, Error> {
+        let wrong = || {
+            let why = format!("is not a list of tables [[{}]]", self.key);
+            Error::Setting { place: self.place.into(), key: self.key.into(), why }
+        };
+        let Some(DeValue::Array(items)) = self.value.map(Spanned::get_ref) else { return Err(wrong()) };
+        let table = |item: &'t Spanned<DeValue<'t>>| match item.get_ref() {
+            DeValue::Table(table) => Ok((table, (self.places)(item.span().start))),
+            _ => Err(wrong()),
+        };
+        items.iter().map(table).collect()
+    }
+
     pub(crate) fn is_list(&self) -> bool {
         matches!(self.value.map(Spanned::get_ref), Some(DeValue::Array(_)))
     }

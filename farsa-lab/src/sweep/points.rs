@@ -1,6 +1,7 @@
 //! Points of a sweep: the settings that vary, and the names of the points.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use farsa_num::crc32;
 
@@ -81,7 +82,10 @@ impl<'f, 'e> Points<'f, 'e> {
 
     /// Returns an error about a point, with the place of its value.
     pub(crate) fn located(&self, point: usize, error: Error) -> Error {
-        let whole = format!("{}: point {} ({})", self.file.base.name, point + 1, self.name(point));
+        let mut whole = self.file.base.name.clone();
+        if !self.file.axes.is_empty() {
+            let _ = write!(whole, ": point {} ({})", point + 1, self.name(point));
+        }
         match error {
             Error::Setting { place, key, why } if place.is_empty() && !key.is_empty() => {
                 let own = self.values(point).find(|(name, _)| name.value == key);

@@ -1,16 +1,14 @@
 //! File of a sweep.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use crate::error::Error;
 use crate::evaluation::generations::Sampling;
 use crate::evaluation::test::TEST_SEED;
 use crate::experiment::settings::Value;
 use crate::limits::MAX_TRIALS;
-use crate::run::config_file::{ConfigFile, Entry, FileKey, MAX_BYTES};
+use crate::run::config_file::{ConfigFile, Entry, FileKey};
 use crate::run::plan::MAX_SEED;
-use crate::store::bounded;
 use crate::strategy::settings::STRATEGY;
 
 /// Largest number of replications of a point, and of values in a list.
@@ -45,7 +43,7 @@ pub(crate) struct Axis {
 
 /// Parts of a sweep file that are not a configuration.
 #[derive(Default)]
-struct Added {
+pub(super) struct Added {
     grid: Vec<Column>,
     list: Vec<Column>,
     replications: Option<Entry<u32>>,
@@ -57,19 +55,19 @@ struct Added {
 type Column = (Entry<String>, Vec<Entry<Value>>);
 
 impl SweepFile {
-    /// Reads a file named by the user.
-    ///
-    /// # Errors
-    /// As [`ConfigFile::read`], with the line.
-    pub(crate) fn read(path: &Path) -> Result<Self, Error> {
-        let text = bounded::read_stream_text(path, MAX_BYTES)?;
-        Self::parse(&path.display().to_string(), &text)
-    }
-
     /// Parses a text, named in errors.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self, Error> {
         let mut added = Added::default();
         let base = ConfigFile::parse_beside(name, text, &mut |found| added.take(found))?;
+        let file = Self::new(base, added)?;
+        if file.axes.is_empty() {
+            return Err(Error::Usage(format!("{name}: neither [grid] nor [list] has a setting: nothing varies")));
+        }
+        Ok(file)
+    }
+
+    /// Combines a configuration with the other keys. Without axes, there is one point.
+    pub(super) fn new(base: ConfigFile, added: Added) -> Result<Self, Error> {
         let Added { grid, list, replications, seeds, tests } = added;
         let mut axes: Vec<Axis> = Vec::new();
         for (key, values) in grid {
@@ -77,9 +75,6 @@ impl SweepFile {
             axes.push(Axis { keys: vec![key], rows });
         }
         axes.extend(Axis::side_by_side(list)?);
-        if axes.is_empty() {
-            return Err(Error::Usage(format!("{name}: neither [grid] nor [list] has a setting: nothing varies")));
-        }
         let keys: Vec<&Entry<String>> = axes.iter().flat_map(|axis| &axis.keys).collect();
         for (index, key) in keys.iter().enumerate() {
             let other = keys.iter().take(index).find(|other| other.value == key.value).map(|other| &other.place);
@@ -111,7 +106,7 @@ impl SweepFile {
 
 impl Added {
     /// Handles a key that is not part of a configuration.
-    fn take(&mut self, found: &FileKey<'_>) -> Result<bool, Error> {
+    pub(super) fn take(&mut self, found: &FileKey<'_>) -> Result<bool, Error> {
         let key = |key: &str| Entry { value: key.to_owned(), place: found.place.to_owned() };
         match found.key.split_once('.') {
             None if ["grid", "list"].contains(&found.key) => {
@@ -192,7 +187,8 @@ impl Axis {
     }
 }
 
-fn wrong(key: &Entry<String>, why: &str) -> Error {
+/// Builds the error of a value.
+pub(super) fn wrong(key: &Entry<String>, why: &str) -> Error {
     Error::Setting { place: key.place.clone(), key: key.value.clone(), why: why.into() }
 }
 

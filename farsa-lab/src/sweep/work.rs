@@ -95,14 +95,24 @@ impl<'s, 'e> Sweep<'s, 'e> {
         };
         plan.seed = self.seeds[seed];
         let path = self.directory(point).join(plan.name());
+        let place = format!("point {} of {}", point + 1, self.points.count());
         let name = match self.seeds.len() {
-            1 => format!("point {} of {}", point + 1, self.points.count()),
-            seeds => format!("point {} of {}, replication {} of {seeds}", point + 1, self.points.count(), seed + 1),
+            seeds if self.points.count() == 1 => format!("replication {} of {seeds}", seed + 1),
+            1 => place,
+            seeds => format!("{place}, replication {} of {seeds}", seed + 1),
         };
         Ok(Member { plan, path, name })
     }
 
-    /// Checks that every selected point can begin.
+    /// Checks that every selected point can begin, without its directories.
+    ///
+    /// # Errors
+    /// The errors of [`work`](Self::work) about the selection and its points.
+    pub(crate) fn ready(&self, which: Selection, ready: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<(), Error> {
+        self.check(&self.wanted(which)?, ready)
+    }
+
+    /// Checks that every point of some runs can begin.
     fn check(&self, runs: &[(usize, usize)], pool: &dyn Fn(&Plan<'e>) -> Result<(), Error>) -> Result<(), Error> {
         let mut points: Vec<usize> = runs.iter().map(|(point, _)| *point).collect();
         points.dedup();

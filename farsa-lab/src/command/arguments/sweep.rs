@@ -13,6 +13,9 @@ pub(crate) struct SweepArgs {
     /// A configuration with tables [grid] (every combination) and [list] (n-th values together) of the settings that vary
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
+    /// Use the quick values of [[checks]]
+    #[arg(long)]
+    pub(crate) quick: bool,
     /// Only the K-th point, from 1, for a task of a scheduler's array
     #[arg(long, value_name = "K", value_parser = whole(1..=u32::MAX))]
     point: Option<u32>,
@@ -50,13 +53,24 @@ impl SweepArgs {
         Selection { point: from_0(self.point), replication: from_0(self.replication) }
     }
 
+    /// Returns the first option that a file of checks does not have.
+    pub(crate) fn refused_by_checks(&self) -> Option<&'static str> {
+        let given =
+            [("--test", self.test.is_some()), ("--archive", self.archive.is_some()), ("--html", self.html.is_some())];
+        given.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
+    }
+
     /// Iterates over the files of the report.
     pub(crate) fn pages(&self) -> impl Iterator<Item = &Path> {
         self.html.iter().chain(&self.md).map(PathBuf::as_path)
     }
 
     pub(crate) fn root(&self) -> PathBuf {
-        let stem = || PathBuf::from("runs").join(self.file.file_stem().unwrap_or_default());
+        let stem = || {
+            let mut stem = self.file.file_stem().unwrap_or_default().to_owned();
+            stem.push(if self.quick { "-quick" } else { "" });
+            PathBuf::from("runs").join(stem)
+        };
         self.out.clone().unwrap_or_else(stem)
     }
 }
