@@ -29,7 +29,7 @@ trial.steps = 60
 measure = "median"
 column = "fitness.best"
 published = 0.5
-source = "Author1990"
+source = "Garcia1998"
 expected = [1e6, inf]
 
 [checks.evolution]
@@ -62,7 +62,7 @@ fn checks_are_runs_with_verdicts() {
     let row = |name: &str| quick.out.lines().find(|line| line.starts_with(name)).expect(name).to_owned();
     for (name, words) in [
         ("stops", ["successful trials", "none (here)", "0.000 to 1.000 ", "3 of 3", "agrees"]),
-        ("improves", ["median fitness.best", "0.5 (Author1990)", "<= 1000000 (quick)", "6 of 6", "agrees"]),
+        ("improves", ["median fitness.best", "0.5 (Garcia1998)", "<= 1000000 (quick)", "6 of 6", "agrees"]),
     ] {
         for word in words {
             assert!(row(name).contains(word), "no {word} in {}", row(name));
