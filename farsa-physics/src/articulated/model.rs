@@ -27,8 +27,7 @@ pub struct Options {
     /// this number, because stacks converge slowly.
     pub sweeps: u32,
     /// The sweeps of a world end with one that changes no contact's velocity by more than this times the dynamics step
-    /// [m/s2]. It is 0 where two free boxes can touch or a body slides on the
-    /// ground.
+    /// [m/s2]. It is 0 where two free boxes can touch or a body slides on the ground.
     pub settled: f64,
     /// Largest distance by which a link may leave its tangent in a dynamics step [m]. Where one leaves it by more, a world
     /// with contacts makes the step in two halves. `None` leaves all steps whole.
