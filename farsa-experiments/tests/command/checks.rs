@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{content, farsa, ok, own, results, say, scratch};
+use crate::tool::{content, farsa, json, ok, own, results, say, scratch};
 
 const FILE: &str = r#"
 [[checks]]
@@ -39,10 +39,6 @@ generations = 30
 evolution.generations = 2
 expected = [-inf, 1e6]
 "#;
-
-fn json(text: &str) -> serde_json::Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
 
 #[test]
 fn checks_are_runs_with_verdicts() {

@@ -9,11 +9,7 @@ use serde_json::Value;
 use crate::tool::command;
 #[cfg(unix)]
 use crate::tool::{Running, interruptible};
-use crate::tool::{farsa, ok, own, scratch};
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).expect("JSON")
-}
+use crate::tool::{farsa, json, ok, own, scratch};
 
 fn read(path: &Path) -> String {
     fs::read_to_string(path).expect("the file")

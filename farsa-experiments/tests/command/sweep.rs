@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::tool::{Running, command, content, farsa, ok, own, results, say, scratch};
+use crate::tool::{Running, command, content, farsa, json, ok, own, results, say, scratch};
 
 const FILE: &str = r#"
 experiment = "cart"
@@ -42,10 +42,6 @@ fn points() -> Vec<(String, String)> {
         }
     }
     points
-}
-
-fn json(text: &str) -> serde_json::Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
 #[test]

@@ -74,6 +74,11 @@ impl From<Output> for Said {
     }
 }
 
+/// Reads the JSON that a program printed.
+pub(crate) fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
 /// Longest wait of a test for a program. The slowest of them take a minute on a machine with other work.
 const PATIENCE: Duration = Duration::from_secs(600);
 
