@@ -232,6 +232,7 @@ fn exported(network: &AnyNetwork, time_step: f64) -> Option<NetworkExport> {
             NetworkExport::Ctrnn { layout: ctrnn.layout(), time_step: time_step as f32, parameters }
         }
         AnyNetwork::Reflex(_) => return None,
+        AnyNetwork::Registered(network) => network.export()?,
         AnyNetwork::HandWired(wired) => {
             NetworkExport::Perceptron { inputs, outputs, slope: 1.0, parameters: wired.as_layer()? }
         }

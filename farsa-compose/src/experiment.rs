@@ -2,17 +2,19 @@
 
 use std::path::Path;
 
-use farsa_lab::advanced::{Lanes, NormalizedController, PlanarWorld, Value as SettingValue, read_text_file};
+use farsa_lab::advanced::{Lanes, NormalizedController, Value as SettingValue, Vocabulary, read_text_file};
 use farsa_lab::strategy::{StrategyDefinition, Truncation};
 use farsa_lab::{EpisodeId, Error, Evaluator, Experiment, InWorld, Setting, Settings};
 use farsa_physics::articulated::{self, Batch, Model, ModelError};
 use serde_json::Value;
 
+use crate::arena::ArenaWorld;
 use crate::arena::episode::ArenaEpisode;
 use crate::arena::setup::Setup;
 use crate::arena::start_contacts;
+use crate::check::completed::{complete, expand};
 use crate::check::embed::embedded;
-use crate::check::schema::{SCENE_SCHEMA, SCHEMA};
+use crate::check::registry::Registry;
 use crate::check::settings::{Entry, apply, entries};
 use crate::check::source::{Names, Source};
 use crate::check::walk;
@@ -66,6 +68,7 @@ pub struct ComposedExperiment {
     /// Settings of the strategy, with the defaults of the file.
     strategy_settings: Vec<Setting>,
     gene_bits: u32,
+    values_version: u32,
     text: String,
     /// Document with all its defaults. An evaluator replaces the values of settings and reads it once.
     document: Value,
@@ -81,14 +84,15 @@ impl ComposedExperiment {
     /// # Errors
     /// Returns [`Error::Io`] and [`Error::File`] for files that cannot be read, and the errors of
     /// [`from_text`](Self::from_text).
-    pub fn from_file(path: impl AsRef<Path>, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
+    pub fn from_file<'v>(path: impl AsRef<Path>, vocabulary: impl Into<Vocabulary<'v>>) -> Result<Self, Error> {
         let path = path.as_ref();
         let text = read_text_file(path, MAX_BYTES)?;
-        Self::read(Limits::default(), &path.display().to_string(), &text, path.parent(), strategies)
+        let name = path.display().to_string();
+        Self::read(Limits::default(), &name, &text, path.parent(), vocabulary.into())
     }
 
     /// Reads an experiment from a text, as if it were the content of this file. It may use any of the given
-    /// strategies.
+    /// strategies and parts.
     ///
     /// If the text names other files, it must contain them in its table `files`, as the
     /// [`definition`](Experiment::definition) of a run does. This never reads any files.
@@ -97,8 +101,8 @@ impl ComposedExperiment {
     /// Returns [`Error::Usage`] for invalid TOML, and [`Error::Setting`] for an invalid value. If a word is unknown,
     /// [`Error::Setting`] also mentions the nearest one. Each error has file, line and key. If there are several, you
     /// get [`Error::Several`].
-    pub fn from_text(file: &str, text: &str, strategies: &[&'static dyn StrategyDefinition]) -> Result<Self, Error> {
-        Self::from_text_within(Limits::default(), file, text, strategies)
+    pub fn from_text<'v>(file: &str, text: &str, vocabulary: impl Into<Vocabulary<'v>>) -> Result<Self, Error> {
+        Self::from_text_within(Limits::default(), file, text, vocabulary)
     }
 
     /// Reads a text like [`from_text`](Self::from_text), but with custom [`Limits`].
@@ -107,13 +111,13 @@ impl ComposedExperiment {
     ///
     /// # Errors
     /// Returns the errors of [`from_text`](Self::from_text).
-    pub fn from_text_within(
+    pub fn from_text_within<'v>(
         limits: Limits,
         file: &str,
         text: &str,
-        strategies: &[&'static dyn StrategyDefinition],
+        vocabulary: impl Into<Vocabulary<'v>>,
     ) -> Result<Self, Error> {
-        Self::read(limits, file, text, None, strategies)
+        Self::read(limits, file, text, None, vocabulary.into())
     }
 
     /// Reads a text. With a folder it may name files there.
@@ -122,14 +126,16 @@ impl ComposedExperiment {
         file: &str,
         text: &str,
         folder: Option<&Path>,
-        strategies: &[&'static dyn StrategyDefinition],
+        vocabulary: Vocabulary<'_>,
     ) -> Result<Self, Error> {
-        let (value, mut source) = walk::read(file, text, &SCHEMA)?;
-        source.limits = limits;
+        let registry = Registry::new(vocabulary.parts)?;
+        let (value, mut source) = walk::read(file, text, &registry.schemas[0])?;
+        (source.limits, source.registry) = (limits, registry);
         let mut document: Document =
             serde_json::from_value(value).map_err(|error| Error::Usage(format!("{file}: {error}")))?;
+        complete(&mut document, &source)?;
         if let Some(text) = embedded(file, text, folder, &document, &source)? {
-            let made = Self::read(limits, file, &text, None, strategies)?;
+            let made = Self::read(limits, file, &text, None, vocabulary)?;
             made.check_starts()?;
             return Ok(made);
         }
@@ -139,11 +145,11 @@ impl ComposedExperiment {
             let why = "is the name of the experiment: 1 to 40 lower-case letters, digits, - and _, the first no sign";
             return Err(Error::Usage(format!("{file}: `{stem}` {why}")));
         }
-        let strategy = strategy(&document, strategies, &source)?;
+        let strategy = strategy(&document, vocabulary.strategies, &source)?;
         // With the defaults of all keys, which are settings, too.
         let value = serde_json::to_value(&document).map_err(|error| Error::Other(error.to_string()))?;
-        source.names = Names::new(&value);
-        let entries = entries(&value, &SCHEMA);
+        source.names = Names::new(&value, &source.registry.schemas[0]);
+        let entries = entries(&value, &source.registry.schemas[0]);
         let strategy_settings = strategy_settings(&document, strategy, &source)?;
         let table: Vec<_> =
             entries.iter().map(|entry| entry.setting.clone()).chain(strategy_settings.clone()).collect();
@@ -156,6 +162,7 @@ impl ComposedExperiment {
             strategy,
             strategy_settings,
             gene_bits: document.genome.bits,
+            values_version: if document.has_joints() { JOINTED_VERSION } else { 1 },
             text: text.into(),
             document: value,
             entries,
@@ -202,7 +209,7 @@ impl ComposedExperiment {
     }
 
     /// Builds an episode. The first starts must find places in the world.
-    fn episode<W: PlanarWorld>(
+    fn episode<W: ArenaWorld>(
         &self,
         (setup, agents): (Setup, Agents),
         world: &mut W,
@@ -280,7 +287,10 @@ impl ComposedExperiment {
 
     fn document(&self, settings: &Settings) -> Result<Document, Error> {
         let value = apply(&self.document, &self.entries, settings)?;
-        serde_json::from_value(value).map_err(|error| Error::Usage(error.to_string()))
+        let mut document: Document = serde_json::from_value(value).map_err(|error| Error::Usage(error.to_string()))?;
+        complete(&mut document, &self.source)?;
+        expand(&mut document, &self.source)?;
+        Ok(document)
     }
 
     /// Rejects parts that do not fit together.
@@ -351,7 +361,7 @@ fn start_of(trial: u32) -> EpisodeId {
 fn add_scene(document: &mut Document, source: &mut Source) -> Result<(), Error> {
     let Some(name) = &document.world.scene else { return Ok(()) };
     let Some(text) = document.files.get(name) else { return Ok(()) };
-    let (mut value, lines) = walk::read(name, text, &SCENE_SCHEMA)?;
+    let (mut value, lines) = walk::read(name, text, &source.registry.schemas[1])?;
     let objects = value.get_mut("objects").map(Value::take).unwrap_or_default();
     let objects: Vec<Object> =
         serde_json::from_value(objects).map_err(|error| Error::Usage(format!("{name}: {error}")))?;
@@ -359,7 +369,8 @@ fn add_scene(document: &mut Document, source: &mut Source) -> Result<(), Error> 
         source.include(&format!("/objects/{}", document.objects.len()), &format!("/objects/{number}"), &lines);
         document.objects.push(object);
     }
-    Ok(())
+    // Defaults of registered things of the scene.
+    complete(document, source)
 }
 
 /// Leaks a text, because names of experiments are static.
@@ -443,8 +454,7 @@ impl Experiment for ComposedExperiment {
     }
 
     fn values_version(&self) -> u32 {
-        let document = serde_json::from_value::<Document>(self.document.clone());
-        if document.is_ok_and(|document| document.has_joints()) { JOINTED_VERSION } else { 1 }
+        self.values_version
     }
 
     fn summary(&self) -> &'static str {

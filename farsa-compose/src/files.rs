@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use farsa_lab::advanced::{ExperimentFiles, Template};
-use farsa_lab::strategy::StrategyDefinition;
+use farsa_lab::advanced::{ExperimentFiles, Part, Template, Vocabulary};
 use farsa_lab::{Error, Experiment};
 
-use crate::check::schema::schema;
+use crate::check::registry::Registry;
 use crate::experiment::ComposedExperiment;
 use crate::limits::Limits;
 
@@ -44,11 +43,11 @@ fn read(
     file: &str,
     text: &str,
     folder: Option<&Path>,
-    strategies: &[&'static dyn StrategyDefinition],
+    vocabulary: Vocabulary<'_>,
 ) -> Result<Box<dyn Experiment>, Error> {
-    Ok(Box::new(ComposedExperiment::read(Limits::default(), file, text, folder, strategies)?))
+    Ok(Box::new(ComposedExperiment::read(Limits::default(), file, text, folder, vocabulary)?))
 }
 
-fn as_text() -> String {
-    format!("{:#}\n", schema())
+fn as_text(parts: &[Part]) -> Result<String, Error> {
+    Ok(format!("{:#}\n", Registry::new(parts)?.schemas[0]))
 }

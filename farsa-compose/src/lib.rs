@@ -11,6 +11,7 @@ mod files;
 mod jointed;
 mod limits;
 mod name;
+pub mod part;
 mod parts;
 
 pub use check::schema::schema;

@@ -16,6 +16,8 @@ pub use crate::experiment::{
 pub use crate::limits::Limits;
 pub use crate::live::LiveSession;
 pub use crate::ranks::{Alone, Ranks};
-pub use crate::run::{ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, LeftOut, ReadExperiment, Template};
+pub use crate::run::{
+    ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, LeftOut, Part, ReadExperiment, Template, Vocabulary,
+};
 pub use crate::run_directory::{GenerationRecord, LogRow, RunChampion, RunDirectory};
 pub use crate::store::{VALUES_VERSION, read_text_file};

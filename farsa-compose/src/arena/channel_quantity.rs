@@ -80,10 +80,11 @@ pub(crate) fn sensed(kind: &SensorKind, channel: usize, robot: &MobileRobot) -> 
         SensorKind::JointSpeed { joints } => {
             ChannelQuantity::new(format!("speed of the {}", joint(joints, channel)), "rad/s", [0.0, 1.0])
         }
-        // Sensors of robots with joints.
-        SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
-            ChannelQuantity::new("nothing", "1", [0.0, 1.0])
-        }
+        // Sensors of robots with joints, and registered ones, which describe themselves.
+        SensorKind::CameraImage { .. }
+        | SensorKind::ColorBlobs { .. }
+        | SensorKind::VisualOffset { .. }
+        | SensorKind::Registered { .. } => ChannelQuantity::new("nothing", "1", [0.0, 1.0]),
         SensorKind::Energy {} => ChannelQuantity::new("energy, 0 dead", "1", [0.0, 1.0]),
         SensorKind::Carried {} => ChannelQuantity::new("whether food is carried", "1", [0.0, 1.0]),
         SensorKind::Constant { value } => ChannelQuantity::new(format!("always {value}"), "1", [0.0, 1.0]),

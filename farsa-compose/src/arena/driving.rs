@@ -1,12 +1,13 @@
 //! Motors of robots in an arena.
 
+use crate::arena::ArenaWorld;
 use farsa_body::ChannelError;
 use farsa_body::motors::{AttachmentMotor, Leds, SignalMotor, SpeedAndTurn, WheelVelocity};
 use farsa_body::ports::{ActuatorId, Channels, Motor};
 use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::Error;
-use farsa_lab::advanced::PlanarWorld;
 
+use crate::arena::registered::{self, PartOfPlanar, RegisteredMotor};
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
 use crate::document::{Led, MotorKind};
@@ -23,6 +24,7 @@ pub(crate) enum Driving {
     Signal(SignalMotor),
     Attachment(AttachmentMotor),
     Nothing(Nothing),
+    Registered(RegisteredMotor),
 }
 
 /// Calls a method of the motor of any kind.
@@ -37,6 +39,7 @@ macro_rules! motor {
             Driving::Signal($motor) => $call,
             Driving::Attachment($motor) => $call,
             Driving::Nothing($motor) => $call,
+            Driving::Registered($motor) => $call,
         }
     };
 }
@@ -51,7 +54,7 @@ impl Channels for Driving {
     }
 }
 
-impl<W: PlanarWorld> Motor<W> for Driving {
+impl<W: ArenaWorld> Motor<W> for Driving {
     /// Drives wheels inline, because most experiments have no other motor.
     #[inline(always)]
     fn drive(&mut self, y: &[f32], world: &mut W) {
@@ -65,12 +68,12 @@ impl<W: PlanarWorld> Motor<W> for Driving {
 
 impl Driving {
     #[inline(never)]
-    fn drive_other<W: PlanarWorld>(&mut self, y: &[f32], world: &mut W) {
+    fn drive_other<W: ArenaWorld>(&mut self, y: &[f32], world: &mut W) {
         motor!(self, motor => motor.drive(y, world));
     }
 
     /// Stops the motor and writes the corresponding values [its channels].
-    pub(crate) fn rest<W: PlanarWorld>(&mut self, y: &mut [f32], world: &mut W) {
+    pub(crate) fn rest<W: ArenaWorld>(&mut self, y: &mut [f32], world: &mut W) {
         match self {
             // Channels for speeds of both signs rest at 1/2, and those for forward speeds at 0.
             Self::Wheels(_) => y.fill(0.5),
@@ -109,6 +112,9 @@ pub(crate) fn motor(
     source: &Source,
 ) -> Result<Driving, Error> {
     let wrong = |why: String| source.wrong(path, why);
+    if let MotorKind::Registered { kind, keys } = kind {
+        return registered::motor(kind, keys, PartOfPlanar { scene, robot, path, source }).map(Driving::Registered);
+    }
     let made = bare(kind, &scene.robots[robot], &scene.parts(robot)).map_err(|error| wrong(error.to_string()))?;
     made.map_err(|what| wrong(format!("needs {what}; the {} has none", scene.robots[robot].name)))
 }

@@ -1,9 +1,10 @@
 //! An episode of robots in an arena.
 
+use crate::arena::ArenaWorld;
 use farsa_body::ports::{BodyId, Channels as _, PairId};
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
-use farsa_lab::advanced::{PlanarWorld, seconds};
+use farsa_lab::advanced::seconds;
 use farsa_lab::{Episode, EpisodeId};
 use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
@@ -34,6 +35,8 @@ pub(crate) struct ArenaEpisode {
     poses: Vec<Pose>,
     /// True if a term depends on the previous step.
     looks_back: bool,
+    /// True if a term is registered.
+    registered: bool,
     numbers: Vec<Numbers>,
     /// Terms of each step, and terms of the last step only.
     measured: [Vec<usize>; 2],
@@ -56,6 +59,7 @@ impl ArenaEpisode {
             before: vec![[0.0; 2]; robots],
             poses: vec![Pose::planar([0.0; 2], 0.0); robots],
             looks_back: setup.terms.iter().any(Term::looks_back),
+            registered: setup.terms.iter().any(Term::is_registered),
             numbers: numbers.collect(),
             setup,
             agents,
@@ -79,7 +83,7 @@ impl ArenaEpisode {
     }
 
     /// Places everything at its start.
-    pub(crate) fn arrange<W: PlanarWorld>(
+    pub(crate) fn arrange<W: ArenaWorld>(
         &mut self,
         world: &mut W,
         id: EpisodeId,
@@ -93,7 +97,7 @@ impl ArenaEpisode {
 
     /// Measures the terms of each step, or the late ones.
     #[inline(always)]
-    fn measure<W: PlanarWorld>(&mut self, world: &W, late: bool) {
+    fn measure<W: ArenaWorld>(&mut self, world: &W, late: bool) {
         if self.setup.moving {
             self.setup.terms.iter_mut().for_each(|term| term.locate(world));
         }
@@ -118,7 +122,7 @@ impl ArenaEpisode {
     }
 
     /// Computes the mean of a term over its robots.
-    fn mean<W: PlanarWorld>(&self, world: &W, term: &Term, tally: &Tally) -> f64 {
+    fn mean<W: ArenaWorld>(&self, world: &W, term: &Term, tally: &Tally) -> f64 {
         if term.is_of_team() {
             return self.value(world, term, 0);
         }
@@ -137,14 +141,14 @@ impl ArenaEpisode {
 
     /// Ends the trial and returns its reward.
     #[cold]
-    fn conclude<W: PlanarWorld>(&mut self, world: &W) -> f64 {
+    fn conclude<W: ArenaWorld>(&mut self, world: &W) -> f64 {
         self.measure(world, true);
         self.agents.ledger.conclude()
     }
 
     /// Returns a term of one robot.
     #[inline(never)]
-    fn value<W: PlanarWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
+    fn value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
         let Self { setup, agents, started, before, poses, numbers, .. } = self;
         let (inputs, outputs) = (agents.spec.inputs.len(), agents.spec.outputs.len());
         let field = setup.foraging.as_ref().map(|(_, field)| field);
@@ -155,7 +159,7 @@ impl ArenaEpisode {
     }
 
     /// Computes the current value of a late term.
-    fn late_value<W: PlanarWorld>(&self, world: &W, number: usize) -> f64 {
+    fn late_value<W: ArenaWorld>(&self, world: &W, number: usize) -> f64 {
         let (term, tally) = (&self.setup.terms[number], &self.agents.ledger.tallies[number]);
         if term.is_of_team() {
             return self.value(world, term, 0);
@@ -172,7 +176,7 @@ impl ArenaEpisode {
 
     /// Returns true after an event that ends the trial early.
     #[inline(always)]
-    fn has_event<W: PlanarWorld>(&self, world: &W) -> bool {
+    fn has_event<W: ArenaWorld>(&self, world: &W) -> bool {
         self.agents.document.episode.ends.iter().any(|ending| match ending {
             Ending::Collision => self.setup.members.iter().any(|member| world.touches(PairId(member.parts.body.0))),
             Ending::Success | Ending::Death => self.has_rare_event(*ending),
@@ -192,7 +196,7 @@ impl ArenaEpisode {
 
     /// Reads all sensors before any motor acts. Dead robots do neither.
     #[inline(never)]
-    fn act_as_team<W: PlanarWorld>(&mut self, world: &mut W) {
+    fn act_as_team<W: ArenaWorld>(&mut self, world: &mut W) {
         let Setup { members, foraging, .. } = &mut self.setup;
         let Agents { spec: NetworkSpec { sensors, motors, inputs, outputs, .. }, networks, x, y, present, .. } =
             &mut self.agents;
@@ -252,15 +256,21 @@ impl Body for ArenaEpisode {
     }
 
     fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity {
+        if let SensorKind::Registered { kind, keys } = kind {
+            return ChannelQuantity::registered(&self.setup.registry, kind, keys, channel);
+        }
         sensed(kind, channel, &self.setup.scene.robots[robot])
     }
 
     fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity {
+        if let MotorKind::Registered { kind, keys } = kind {
+            return ChannelQuantity::registered(&self.setup.registry, kind, keys, channel);
+        }
         driven(kind, channel, &self.setup.scene.robots[robot])
     }
 }
 
-impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
+impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
     fn start(&mut self, world: &mut W, id: EpisodeId) {
         let arranged = self.arrange(world, id).is_ok();
         self.agents.begin(arranged);
@@ -305,6 +315,9 @@ impl<W: PlanarWorld> Episode<W> for ArenaEpisode {
             if let Some((_, field)) = setup.foraging.as_mut().filter(|_| robot < agents.present) {
                 field.step(robot, [0, 1].map(|k| f64::from(pose.position[k])));
             }
+        }
+        if self.registered {
+            self.setup.terms.iter_mut().for_each(|term| term.step(world));
         }
         // Food changes before the terms are measured, so a delivery counts in the same step.
         self.measure(world, false);

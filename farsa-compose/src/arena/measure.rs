@@ -4,9 +4,11 @@ use farsa_body::ports::BodyId;
 use farsa_lab::Error;
 use farsa_num::Scalar;
 
+use crate::arena::registered::{self, PartOfPlanar};
 use crate::arena::scene::{Scene, Thing};
 use crate::check::source::Source;
 use crate::document::RewardKind;
+use crate::part::object::PlanarTerm;
 
 /// The measure of a term for one robot.
 #[derive(Clone, Debug)]
@@ -65,6 +67,8 @@ pub(crate) enum Measure {
     TimeLeft {
         rest: [usize; 2],
     },
+    /// For each robot.
+    Registered(Vec<Box<dyn PlanarTerm>>),
 }
 
 /// An area.
@@ -93,46 +97,43 @@ impl Measure {
             let solid = scene.thing(name, &path, source)?.solid();
             solid.ok_or_else(|| source.wrong(&path, format!("`{name}` is no cylinder")))
         };
+        if let RewardKind::Registered { kind, keys } = kind {
+            let term = |robot| registered::term(kind, keys, PartOfPlanar { scene, robot, path, source });
+            let terms = (0..scene.robots.len()).map(term).collect::<Result<_, _>>()?;
+            return Ok((Self::Registered(terms), None));
+        }
         let mut about = None;
+        let mut of = |thing, measure| {
+            about = Some(thing);
+            measure
+        };
         let measure = match kind {
             RewardKind::Near { object, within, .. } => {
                 let (thing, radius) = cylinder(object)?;
-                about = Some(thing);
-                Measure::Near { radius, within: *within }
+                of(thing, Measure::Near { radius, within: *within })
             }
             RewardKind::Gap { object } => {
                 let (thing, radius) = cylinder(object)?;
-                about = Some(thing);
-                Measure::Gap { radius }
+                of(thing, Measure::Gap { radius })
             }
             RewardKind::Contact { object, within } => {
                 let (thing, radius) = cylinder(object)?;
-                about = Some(thing);
-                Measure::Contact { radius, within: *within }
+                of(thing, Measure::Contact { radius, within: *within })
             }
-            RewardKind::Distance { object, .. } => {
-                about = Some(body(object)?);
-                Measure::Distance
-            }
-            RewardKind::Approach { object, .. } => {
-                about = Some(body(object)?);
-                Measure::Approach
-            }
-            RewardKind::Angle { object } => {
-                about = Some(body(object)?);
-                Measure::Angle
-            }
+            RewardKind::Distance { object, .. } => of(body(object)?, Measure::Distance),
+            RewardKind::Approach { object, .. } => of(body(object)?, Measure::Approach),
+            RewardKind::Angle { object } => of(body(object)?, Measure::Angle),
             RewardKind::Touch { .. } => Measure::Touch,
             RewardKind::Displacement { .. } => Measure::Displacement,
-            RewardKind::Moved { object } => {
-                about = Some(body(object)?);
-                Measure::Moved
-            }
+            RewardKind::Moved { object } => of(body(object)?, Measure::Moved),
             RewardKind::Speed { .. } => Measure::Speed,
             RewardKind::Forward { .. } => Measure::Forward,
             RewardKind::Progress { along, .. } => Measure::Progress(direction(along, path, source)?),
             RewardKind::Position { along, .. } => Measure::Position(direction(along, path, source)?),
-            RewardKind::Height { .. } | RewardKind::Upright { .. } | RewardKind::JointSpeed { .. } => {
+            RewardKind::Height { .. }
+            | RewardKind::Upright { .. }
+            | RewardKind::JointSpeed { .. }
+            | RewardKind::Registered { .. } => {
                 return Err(source.wrong(path, "is for robots with joints; this one is on wheels"));
             }
             RewardKind::WheelSpeed {} => Measure::WheelSpeed,

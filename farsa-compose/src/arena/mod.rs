@@ -1,5 +1,7 @@
 //! Robots on wheels in an arena.
 
+/// Abilities that a world must have.
+mod arena_world;
 /// Quantities of channels.
 mod channel_quantity;
 /// Motors, with their wrappers.
@@ -14,6 +16,8 @@ mod field_view;
 mod gathering;
 /// Measures of terms.
 pub(crate) mod measure;
+/// Registered sensors and motors.
+mod registered;
 /// Arena, and the bodies that names refer to.
 pub(crate) mod scene;
 /// Sensors, with their wrappers.
@@ -26,3 +30,5 @@ pub(crate) mod start_contacts;
 pub(crate) mod starting;
 /// Terms of the fitness.
 pub(crate) mod term;
+
+pub(crate) use arena_world::ArenaWorld;

@@ -128,7 +128,7 @@ impl Scene {
                 ObjectKind::Cylinder { radius, .. } | ObjectKind::Disc { radius, .. } => *radius,
                 ObjectKind::Wall { size, .. } | ObjectKind::Rectangle { size, .. } => size[0].max(size[1]),
                 ObjectKind::Block { size, .. } => size[0].max(size[1]),
-                ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => {
+                ObjectKind::Ball { .. } | ObjectKind::Marker { .. } | ObjectKind::Registered { .. } => {
                     let why = "is for robots with joints; next to one on wheels are cylinders, discs and rectangles";
                     return Err(source.wrong(&format!("/objects/{index}"), why));
                 }
@@ -276,7 +276,7 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
             Thing::Block { body, reach: 0.5 * farsa_num::Scalar::sqrt(size[0] * size[0] + size[1] * size[1]) }
         }
         // Rejected by `Scene::new`.
-        ObjectKind::Ball { .. } | ObjectKind::Marker { .. } => Thing::Wall,
+        ObjectKind::Ball { .. } | ObjectKind::Marker { .. } | ObjectKind::Registered { .. } => Thing::Wall,
         ObjectKind::Disc { radius, color } => {
             arena.add_area(Area { heading, ..Area::circle(at, radius, color) });
             Thing::Area { body, half: [radius; 2], disc: true }
@@ -332,7 +332,7 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
         if taken || !document.robots.is_empty() && name.starts_with(ROBOT) {
             return Err(source.wrong(&format!("{path}/name"), format!("`{name}` names something else already")));
         }
-        let mut made = mobile_robot(robot);
+        let mut made = mobile_robot(robot, source);
         made.color = color.unwrap_or(made.color);
         if !document.robots.is_empty() {
             made.name.clone_from(name);
@@ -353,8 +353,11 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
 }
 
 /// Builds a named robot with the changes of the document.
-fn mobile_robot(robot: &Robot) -> MobileRobot {
-    let mut mobile = match robot.kind {
+fn mobile_robot(robot: &Robot, source: &Source) -> MobileRobot {
+    let mut mobile = match &robot.kind {
+        RobotKind::Registered(registered) => {
+            source.registry.wheels(&registered.name).map_or_else(MobileRobot::khepera, Clone::clone)
+        }
         // `check` has rejected robots with joints.
         RobotKind::Khepera | RobotKind::ArmAndHand | RobotKind::Model => MobileRobot::khepera(),
         RobotKind::EPuck => MobileRobot::e_puck(),

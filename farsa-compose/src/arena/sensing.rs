@@ -11,10 +11,11 @@ use farsa_body::sensors::{
     LaserDistance, LightSensors, Point, Signal, SignalSensor, TargetPosition, Touch, Traction, WheelSpeed,
 };
 use farsa_lab::Error;
-use farsa_lab::advanced::PlanarWorld;
 
+use crate::arena::ArenaWorld;
 use crate::arena::field::Forager;
 use crate::arena::measure::one_body;
+use crate::arena::registered::{self, PartOfPlanar, RegisteredSensor, wheel};
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
 use crate::document::{InfraredModel, SensorKind};
@@ -49,6 +50,7 @@ pub(crate) enum Sensing {
     Constant(Signal<1>),
     Energy(Signal<1>),
     Carried(Signal<1>),
+    Registered(RegisteredSensor),
 }
 
 /// Calls a method of the sensor of any kind.
@@ -80,6 +82,7 @@ macro_rules! sensor {
             Sensing::Constant($sensor) => $call,
             Sensing::Energy($sensor) => $call,
             Sensing::Carried($sensor) => $call,
+            Sensing::Registered($sensor) => $call,
         }
     };
 }
@@ -94,7 +97,7 @@ impl Channels for Sensing {
     }
 }
 
-impl<W: PlanarWorld> Sensor<W> for Sensing {
+impl<W: ArenaWorld> Sensor<W> for Sensing {
     /// Reads infrared rays inline, because most experiments have them.
     #[inline(always)]
     fn read(&mut self, world: &W, out: &mut [f32]) {
@@ -108,7 +111,7 @@ impl<W: PlanarWorld> Sensor<W> for Sensing {
 
 impl Sensing {
     #[inline(never)]
-    fn read_other<W: PlanarWorld>(&mut self, world: &W, out: &mut [f32]) {
+    fn read_other<W: ArenaWorld>(&mut self, world: &W, out: &mut [f32]) {
         sensor!(self, sensor => sensor.read(world, out));
     }
 
@@ -131,6 +134,9 @@ pub(crate) fn sensor(
     files: &mut Files<'_>,
     source: &Source,
 ) -> Result<Sensing, Error> {
+    if let SensorKind::Registered { kind, keys } = kind {
+        return registered::sensor(kind, keys, PartOfPlanar { scene, robot, path, source }).map(Sensing::Registered);
+    }
     let target = match kind {
         SensorKind::TargetPosition { target, .. } => Some(scene.body(target, &format!("{path}/target"), source)?),
         _ => None,
@@ -189,12 +195,6 @@ fn check(kind: &SensorKind, path: &str, source: &Source) -> Result<(), Error> {
         _ => return Ok(()),
     };
     one_body(body.as_ref(), bodies, point, path, source)
-}
-
-/// Returns a wheel by name.
-fn wheel(name: &str, parts: &MobileParts, path: &str, source: &Source) -> Result<JointId, Error> {
-    const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
-    Ok(parts.wheels[source.position(WHEELS.into_iter(), ("joint", name), path)?])
 }
 
 /// Returns the first items of a list, or all of them for 0.
@@ -276,8 +276,11 @@ fn bare(
         SensorKind::JointSpeed { .. } => {
             Sensing::JointSpeed(wheels.iter().map(|wheel| JointSpeed::new(*wheel)).collect())
         }
-        // Rejected by `check`.
-        SensorKind::CameraImage { .. } | SensorKind::ColorBlobs { .. } | SensorKind::VisualOffset { .. } => {
+        // Rejected by `check`, or built by `sensor`.
+        SensorKind::CameraImage { .. }
+        | SensorKind::ColorBlobs { .. }
+        | SensorKind::VisualOffset { .. }
+        | SensorKind::Registered { .. } => {
             return Err(ChannelError::Groups { field: "eyes", count: 0, size: 1 });
         }
         SensorKind::Energy {} => Sensing::Energy(Signal::new([0.0])),

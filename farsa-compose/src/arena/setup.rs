@@ -1,10 +1,10 @@
 //! Scene with the sensors, motors and terms of its robots.
 
+use crate::arena::ArenaWorld;
 use farsa_body::ports::{BodyId, Channels as _};
 use farsa_body::robots::MobileRobot;
 use farsa_body::sensors::infrared::InfraredDrawing;
 use farsa_lab::Error;
-use farsa_lab::advanced::PlanarWorld;
 
 use crate::arena::driving::{Driving, motor};
 use crate::arena::field::Field;
@@ -12,6 +12,7 @@ use crate::arena::scene::{Scene, Thing};
 use crate::arena::sensing::{Sensing, sensor};
 use crate::arena::starting::Starting;
 use crate::arena::term::Term;
+use crate::check::registry::Registry;
 use crate::check::source::Source;
 use crate::document::{Document, Ending, MotorKind, SensorKind, TestProtocol};
 use crate::parts::agents::Agents;
@@ -35,6 +36,7 @@ pub(crate) struct Setup {
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
+    pub(crate) registry: Registry,
 }
 
 /// Sensors and motors of a robot.
@@ -48,7 +50,7 @@ pub(crate) struct Member {
 
 impl Member {
     /// Stops all motors.
-    pub(crate) fn rest<W: PlanarWorld>(&mut self, spans: &Spans, y: &mut [f32], world: &mut W) {
+    pub(crate) fn rest<W: ArenaWorld>(&mut self, spans: &Spans, y: &mut [f32], world: &mut W) {
         for (motor, (_, [first, end])) in self.equipment.motors.iter_mut().zip(spans) {
             motor.kind_mut().rest(&mut y[*first..*end], world);
         }
@@ -90,7 +92,8 @@ impl Setup {
             || terms.iter().any(|term| term.is_about_robot(&scene));
         let starting = Starting::new(&document, &scene, source)?;
         let agents = Agents::new(document, spec, ledger, scene.groups.clone());
-        Ok((Self { scene, members, foraging, moving, starting, terms }, agents))
+        let registry = source.registry.clone();
+        Ok((Self { scene, members, foraging, moving, starting, terms, registry }, agents))
     }
 }
 

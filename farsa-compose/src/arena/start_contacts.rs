@@ -1,7 +1,7 @@
 //! Overlaps at the start of a trial.
 
+use crate::arena::ArenaWorld;
 use farsa_body::ports::{BodyId, NearbySurface};
-use farsa_lab::advanced::PlanarWorld;
 use farsa_lab::{EpisodeId, Error};
 use farsa_num::{Scalar, sin_cos};
 
@@ -27,7 +27,7 @@ impl Obstacle {
 /// Refuses a start of one of the trials with a robot or a block inside another thing or a wall.
 ///
 /// The world refuses cylinders inside walls when it is built.
-pub(crate) fn check_start<W: PlanarWorld>(
+pub(crate) fn check_start<W: ArenaWorld>(
     episode: &mut ArenaEpisode,
     world: &mut W,
     trials: impl Iterator<Item = EpisodeId>,
@@ -56,7 +56,7 @@ pub(crate) fn check_start<W: PlanarWorld>(
 }
 
 /// Returns what a robot overlaps, if anything.
-fn inside_disc<W: PlanarWorld>(world: &W, body: BodyId, radius: f32) -> Option<Obstacle> {
+fn inside_disc<W: ArenaWorld>(world: &W, body: BodyId, radius: f32) -> Option<Obstacle> {
     let [x, y, _] = world.pose(body).position;
     overlapping(world, body, [x, y], radius, |near| near.distance < radius - DEEPEST)
 }
@@ -64,7 +64,7 @@ fn inside_disc<W: PlanarWorld>(world: &W, body: BodyId, radius: f32) -> Option<O
 /// Returns what a box with these sides overlaps, if anything.
 ///
 /// From its center, corners and edges, the nearest point of another surface is sought inside it.
-fn inside_box<W: PlanarWorld>(world: &W, body: BodyId, size: [f64; 2]) -> Option<Obstacle> {
+fn inside_box<W: ArenaWorld>(world: &W, body: BodyId, size: [f64; 2]) -> Option<Obstacle> {
     let pose = world.pose(body);
     let ([x, y, _], (sine, cosine)) = (pose.position, sin_cos(pose.heading()));
     let [a, b] = size.map(|side| Scalar::max(0.5 * side as f32 - DEEPEST, 0.0));
@@ -82,7 +82,7 @@ fn inside_box<W: PlanarWorld>(world: &W, body: BodyId, size: [f64; 2]) -> Option
 }
 
 /// Returns the first other body near a point that satisfies a test.
-fn overlapping<W: PlanarWorld>(
+fn overlapping<W: ArenaWorld>(
     world: &W,
     body: BodyId,
     from: [f32; 2],

@@ -2,16 +2,18 @@
 
 use core::f32::consts::PI;
 
+use crate::arena::ArenaWorld;
 use farsa_body::ports::BodyId;
 use farsa_body::{Pose, Twist};
 use farsa_lab::Error;
-use farsa_lab::advanced::PlanarWorld;
 use farsa_num::{Scalar, Stream, sin_cos};
 use farsa_physics::arena::{ArenaError, FreePlace};
 
+use crate::arena::registered::{self, PartOfPlanar};
 use crate::arena::scene::{ROBOT, Scene, Thing, flat, within_walls};
 use crate::check::source::Source;
 use crate::document::{Document, Placing, Start};
+use crate::part::object::PlanarStart;
 use crate::parts::choice::Choice;
 
 /// A placement with its bodies.
@@ -50,6 +52,7 @@ enum How {
         point: [f64; 2],
         heading: Option<f64>,
     },
+    Registered(Box<dyn PlanarStart>),
 }
 
 impl How {
@@ -87,8 +90,17 @@ struct Before {
 }
 
 impl Before {
+    /// Adds a body of a rule.
+    fn add(&mut self, body: BodyId, rule: &Rule) {
+        if rule.solid {
+            self.others.push((body, 0.0));
+        } else {
+            self.areas.push((body, rule.edge));
+        }
+    }
+
     /// Checks if a body is exactly at this point.
-    fn is_at<W: PlanarWorld>(&self, world: &W, point: [f32; 2]) -> bool {
+    fn is_at<W: ArenaWorld>(&self, world: &W, point: [f32; 2]) -> bool {
         let others = self.others.iter().map(|(body, _)| body).chain(self.areas.iter().map(|(body, _)| body));
         others.map(|body| world.pose(*body).position).any(|[x, y, _]| [x, y] == point)
     }
@@ -135,6 +147,10 @@ impl Starting {
                     let points_of_rule =
                         points.map(|at| Ok(point(at)?.map(|x| x as f32))).collect::<Result<Vec<_>, Error>>();
                     How::OneOf(Choice::new(points_of_rule?, like.as_ref(), document, index, source)?)
+                }
+                Placing::Registered { at, keys } => {
+                    let part = PartOfPlanar { scene, robot: 0, path: &path, source };
+                    How::Registered(registered::start(at, keys, part)?)
                 }
                 Placing::InBox { .. } | Placing::Turned { .. } => {
                     return Err(source.wrong(&format!("{path}/at"), "is for robots with joints; this one is on wheels"));
@@ -194,7 +210,7 @@ impl Starting {
     }
 
     /// Places all bodies, by draws in the order of the rules. Only the first `present` robots take part.
-    pub(crate) fn arrange<W: PlanarWorld>(
+    pub(crate) fn arrange<W: ArenaWorld>(
         &mut self,
         world: &mut W,
         stream: &mut Stream,
@@ -212,7 +228,8 @@ impl Starting {
         before.areas.clear();
         before.others.extend(standing.iter().map(|body| (*body, 0.0)));
         for (number, rule) in rules.iter().enumerate() {
-            for &body in rule.bodies.iter().filter(|body| !absent.iter().any(|(other, _)| other == *body)) {
+            let present = rule.bodies.iter().filter(|body| !absent.iter().any(|(other, _)| other == *body));
+            for (index, &body) in present.enumerate() {
                 let apart = match rule.how {
                     How::Anywhere { apart, .. } | How::Near { apart, .. } => apart,
                     _ => 0.0,
@@ -220,6 +237,14 @@ impl Starting {
                 // The distance belongs to the rule that places, not to the bodies placed earlier.
                 for (_, far) in &mut before.others {
                     *far = apart as f32;
+                }
+                if let How::Registered(start) = &rule.how {
+                    let none = ArenaError::NoFreePlace { tries: 1, radius: rule.radius as f32, short: 0.0 };
+                    let pose = world.draw(&**start, index, stream).ok_or(none)?;
+                    world.place_body(body, pose, Twist::default());
+                    world.finish_placement();
+                    before.add(body, rule);
+                    continue;
                 }
                 let at = place(rule, number, chosen, *size, world, before, stream)?;
                 // The heading is drawn after the place. Another order would change all later draws of the stream.
@@ -231,11 +256,7 @@ impl Starting {
                 // The search for a free place reads the world, so each body is finished before the next draw.
                 world.place_body(body, Pose::planar(at, heading), Twist::default());
                 world.finish_placement();
-                if rule.solid {
-                    before.others.push((body, 0.0));
-                } else {
-                    before.areas.push((body, rule.edge));
-                }
+                before.add(body, rule);
             }
         }
         Ok(())
@@ -289,7 +310,7 @@ fn numbered(name: &str) -> Option<usize> {
 }
 
 /// Draws a place for one body of a rule. Obstacles keep their distance from other bodies, and areas from other areas.
-fn place<W: PlanarWorld>(
+fn place<W: ArenaWorld>(
     rule: &Rule,
     number: usize,
     chosen: &mut [usize],
@@ -300,6 +321,8 @@ fn place<W: PlanarWorld>(
 ) -> Result<[f32; 2], ArenaError> {
     let (walls, apart, near) = match &rule.how {
         How::Fixed { point, .. } => return Ok(point.map(|x| x as f32)),
+        // Drawn by `arrange`.
+        How::Registered(_) => return Ok([0.0; 2]),
         How::OneOf(choice) => {
             let point_number = choice.take(chosen, |point| before.is_at(world, *point), |count| stream.below(count));
             let (tries, radius) = (choice.points.len() as u32, rule.radius as f32);

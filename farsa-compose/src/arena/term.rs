@@ -1,10 +1,10 @@
 //! Terms of the fitness for robots in an arena.
 
+use crate::arena::ArenaWorld;
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, PairId};
 use farsa_body::robots::MobileParts;
 use farsa_lab::Error;
-use farsa_lab::advanced::PlanarWorld;
 use farsa_num::{Scalar, atan2};
 
 use crate::arena::field::Field;
@@ -70,7 +70,7 @@ impl Term {
 
     /// Checks if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
-        matches!(self.measure, Measure::Speed | Measure::Forward | Measure::Progress(_))
+        matches!(self.measure, Measure::Speed | Measure::Forward | Measure::Progress(_) | Measure::Registered(_))
     }
 
     /// Checks if the thing is a robot, which moves.
@@ -94,13 +94,32 @@ impl Term {
     }
 
     /// Stores the pose of the thing at the start of a trial.
-    pub(crate) fn begin<W: PlanarWorld>(&mut self, world: &W) {
+    pub(crate) fn begin<W: ArenaWorld>(&mut self, world: &W) {
         self.locate(world);
         self.began = self.place;
+        if let Measure::Registered(terms) = &mut self.measure {
+            for term in terms {
+                world.begin(&mut **term);
+            }
+        }
+    }
+
+    /// Updates a registered measure after a step.
+    pub(crate) fn step<W: ArenaWorld>(&mut self, world: &W) {
+        if let Measure::Registered(terms) = &mut self.measure {
+            for term in terms {
+                world.step_term(&mut **term);
+            }
+        }
+    }
+
+    /// Checks if the measure is registered.
+    pub(crate) fn is_registered(&self) -> bool {
+        matches!(self.measure, Measure::Registered(_))
     }
 
     /// Updates the pose of the thing.
-    pub(crate) fn locate<W: PlanarWorld>(&mut self, world: &W) {
+    pub(crate) fn locate<W: ArenaWorld>(&mut self, world: &W) {
         if let Some(thing) = self.thing {
             self.place = world.pose(thing);
         }
@@ -111,7 +130,7 @@ impl Term {
     /// Contains the measures of most experiments. The others are separate, so that a step does not prepare their
     /// inputs.
     #[inline]
-    pub(crate) fn quick<W: PlanarWorld>(
+    pub(crate) fn quick<W: ArenaWorld>(
         &self,
         world: &W,
         parts: &MobileParts,
@@ -136,7 +155,7 @@ impl Term {
     }
 
     /// Returns 1 if a robot collides with the thing, or if the gap between their hulls is at most `within` [m].
-    fn contact<W: PlanarWorld>(&self, world: &W, parts: &MobileParts, gap: f64, within: f64) -> f64 {
+    fn contact<W: ArenaWorld>(&self, world: &W, parts: &MobileParts, gap: f64, within: f64) -> f64 {
         let meets = |body: BodyId, other: Option<BodyId>| {
             let pair = PairId(body.0);
             world.touches(pair) && world.pair_bodies(pair)[1] == other
@@ -158,7 +177,7 @@ impl Term {
     }
 
     /// Computes the measure of robot number `robot`.
-    pub(crate) fn value<W: PlanarWorld>(
+    pub(crate) fn value<W: ArenaWorld>(
         &self,
         world: &W,
         parts: &MobileParts,
@@ -245,22 +264,16 @@ impl Term {
                 let left = 1.0 - f64::from(rows.steps[0]) / f64::from(rows.steps[1]);
                 if (*first..*end).contains(&robot) { 1.0 - left } else { left }
             }
+            Measure::Registered(terms) => terms.get(robot).map_or(f64::NAN, |term| world.value(&**term)),
             Measure::Near { .. } | Measure::Touch | Measure::Steps => {
                 self.quick(world, parts, pose, numbers).unwrap_or(0.0)
             }
-            Measure::Food
-            | Measure::CarriedFood
-            | Measure::LostFood
-            | Measure::Deaths
-            | Measure::FullestArea(_)
-            | Measure::Dispersion
-            | Measure::Clusters
-            | Measure::LargestCluster => self.team_value(world, rows, numbers.radius),
+            _ => self.team_value(world, rows, numbers.radius),
         }
     }
 
     /// Returns a measure of the whole team, whose robots have this radius [m].
-    fn team_value<W: PlanarWorld>(&self, world: &W, rows: &Rows<'_>, radius: f64) -> f64 {
+    fn team_value<W: ArenaWorld>(&self, world: &W, rows: &Rows<'_>, radius: f64) -> f64 {
         let food = |count: fn(&Field) -> f64| rows.field.map_or(0.0, count);
         let gathering = || Gathering::new(rows.poses, radius);
         let share = |robots: f64| robots / rows.poses.len().max(1) as f64;
@@ -295,7 +308,7 @@ fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Checks if the center of a robot is in an area.
-fn is_in<W: PlanarWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
+fn is_in<W: ArenaWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
     let MeasuredArea { body, half, disc } = area;
     let area = world.pose(*body);
     if *disc {

@@ -1,7 +1,11 @@
 //! Text of a file, checked against the schema of the format.
 
+/// Registered parts with the defaults of their keys.
+pub(crate) mod completed;
 /// Embeds the files that a text names.
 pub(crate) mod embed;
+/// Parts of the user's program.
+pub(crate) mod registry;
 /// Access to the JSON schema.
 pub(crate) mod schema;
 /// Values of a document as settings.

@@ -17,10 +17,8 @@ pub fn schema() -> Value {
 /// Schema, built once because it takes a megabyte.
 pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
 
-/// Schema of a file with objects only.
-pub(crate) static SCENE_SCHEMA: LazyLock<Value> = LazyLock::new(|| scene_schema(&SCHEMA));
-
-fn scene_schema(schema: &Value) -> Value {
+/// Returns the schema of a file with objects only.
+pub(crate) fn scene_schema(schema: &Value) -> Value {
     let objects = schema.pointer("/properties/objects").cloned().unwrap_or_default();
     serde_json::json!({
         "type": "object",
@@ -31,11 +29,26 @@ fn scene_schema(schema: &Value) -> Value {
     })
 }
 
+/// Calls the branches of a tagged table or of a list of words `oneOf`. With a registered kind, whose schema is absent, they
+/// are `anyOf`.
+fn name_branches(map: &mut Map<String, Value>) {
+    let named = |branch: &Value| {
+        let properties = branch.get("properties").and_then(Value::as_object);
+        branch.get("const").is_some()
+            || properties.is_some_and(|all| all.values().any(|value| value.get("const").is_some()))
+    };
+    let all_named = map.get("anyOf").and_then(Value::as_array).is_some_and(|branches| branches.iter().all(named));
+    if all_named && let Some(branches) = map.remove("anyOf") {
+        map.insert("oneOf".into(), branches);
+    }
+}
+
 /// Forbids unnamed keys in every table.
 fn close(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
             map.values_mut().for_each(close);
+            name_branches(map);
             let table = map.contains_key("properties") && map.get("type").is_some_and(|kind| kind == "object");
             if table && !map.contains_key("additionalProperties") {
                 map.insert("unevaluatedProperties".into(), false.into());

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use farsa_lab::Error;
 use serde_json::Value;
 
-use crate::check::schema::{Part, SCHEMA};
+use crate::check::registry::Registry;
+use crate::check::schema::Part;
 use crate::check::settings::names;
 use crate::limits::Limits;
 
@@ -19,27 +20,29 @@ pub(crate) struct Source {
     others: Vec<(String, Self)>,
     pub(crate) limits: Limits,
     pub(crate) names: Names,
+    pub(crate) registry: Registry,
 }
 
 /// Names of parts, which no setting changes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {
     /// Name and description of each sensor.
-    pub(crate) sensors: Vec<(String, &'static str)>,
+    pub(crate) sensors: Vec<(String, String)>,
     /// Name and description of each motor.
-    pub(crate) motors: Vec<(String, &'static str)>,
+    pub(crate) motors: Vec<(String, String)>,
     pub(crate) terms: Vec<String>,
 }
 
 impl Names {
-    /// Names the parts of a document.
-    pub(crate) fn new(document: &Value) -> Self {
+    /// Names the parts of a document with this schema.
+    pub(crate) fn new(document: &Value, schema: &Value) -> Self {
         let list = |key: &str| document[key].as_array().map_or(&[][..], Vec::as_slice);
-        let root = Part::root(&SCHEMA);
+        let root = Part::root(schema);
         let described = |key: &str| {
             let about =
                 |part: &Value| root.map_or("", |root| root.about(key, part["kind"].as_str().unwrap_or_default()));
-            names(list(key)).into_iter().zip(list(key).iter().map(about)).collect()
+            let about = list(key).iter().map(about).map(str::to_owned);
+            names(list(key)).into_iter().zip(about).collect()
         };
         Self { sensors: described("sensors"), motors: described("motors"), terms: names(list("reward")) }
     }
@@ -96,6 +99,11 @@ impl Source {
     ) -> Result<usize, Error> {
         let number = names.clone().position(|other| other == name);
         number.ok_or_else(|| Error::unknown(&self.of(path), what, name, names))
+    }
+
+    /// Adds the place of a part to an error without one.
+    pub(crate) fn at(&self, path: &str, error: Error) -> Error {
+        if let Error::Other(why) = error { self.wrong(path, why) } else { error }
     }
 
     /// Creates the error of a value.

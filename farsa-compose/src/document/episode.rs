@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// Steps and trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -131,5 +132,15 @@ pub enum Placing {
         /// Draws the heading instead.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         drawn_heading: bool,
+    },
+    /// A placement of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        at: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
     },
 }

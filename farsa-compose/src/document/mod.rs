@@ -40,7 +40,7 @@ pub use foraging::Foraging;
 pub use motor::{Led, Motor, MotorKind};
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
-pub use robot::{Robot, RobotGroup, RobotKind, Team};
+pub use robot::{RegisteredRobot, Robot, RobotGroup, RobotKind, Team};
 pub use sensor::{AxesName, Camera, ColorRange, Eye, InfraredModel, MeasuredBody, MeasuredTables, Sensor, SensorKind};
 pub use world::{Collisions, Engine, Object, ObjectKind, World};
 pub use wrapper::Wrapper;

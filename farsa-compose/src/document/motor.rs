@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::document::wrapper::Wrapper;
 use crate::document::yes;
@@ -110,6 +111,16 @@ pub enum MotorKind {
         /// Lever arm of the tension about the joint [m].
         #[schemars(range(min = 1e-6, max = 1e3))]
         moment_arm: Option<f64>,
+    },
+    /// A motor of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        kind: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
     },
 }
 

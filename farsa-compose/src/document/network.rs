@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::document::blocks::{Blocks, leaks};
 use crate::document::evonet::Evonet;
@@ -105,6 +106,16 @@ pub enum NetworkKind {
     Blocks(Blocks),
     /// The network of the 2013 program.
     Evonet(Evonet),
+    /// A network of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        kind: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
+    },
 }
 
 /// A wire that adds to an output the weighted sum of some inputs.

@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::document::one;
 use crate::name::NAME;
@@ -221,6 +222,16 @@ pub enum RewardKind {
     TimeLeft {
         /// Name of a group of robots for which it is the rest of 1 instead.
         rest: String,
+    },
+    /// A term of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        kind: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
     },
 }
 

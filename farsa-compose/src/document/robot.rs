@@ -64,7 +64,7 @@ fn one() -> u32 {
 }
 
 /// Robots of FARSA.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RobotKind {
     /// 35 mm radius, eight infrared sensors.
@@ -77,11 +77,41 @@ pub enum RobotKind {
     ArmAndHand,
     /// A model from a URDF or MJCF file.
     Model,
+    /// A robot of the user's program.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered(RegisteredRobot),
+}
+
+/// Name of a robot of the user's program.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub struct RegisteredRobot {
+    /// Registered name.
+    pub name: String,
+    /// True for joints instead of wheels.
+    pub(crate) joints: bool,
+}
+
+impl From<String> for RegisteredRobot {
+    fn from(name: String) -> Self {
+        Self { name, joints: false }
+    }
+}
+
+impl From<RegisteredRobot> for String {
+    fn from(robot: RegisteredRobot) -> Self {
+        robot.name
+    }
 }
 
 impl RobotKind {
     /// Returns true for robots with joints instead of wheels.
-    pub(crate) fn has_joints(self) -> bool {
-        matches!(self, Self::ArmAndHand | Self::Model)
+    pub(crate) fn has_joints(&self) -> bool {
+        match self {
+            Self::ArmAndHand | Self::Model => true,
+            Self::Registered(robot) => robot.joints,
+            Self::Khepera | Self::EPuck | Self::Marxbot => false,
+        }
     }
 }

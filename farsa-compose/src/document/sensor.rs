@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::document::wrapper::Wrapper;
 use crate::document::{one, yes};
@@ -220,6 +221,16 @@ pub enum SensorKind {
         /// Value.
         #[schemars(range(min = -1e6, max = 1e6))]
         value: f64,
+    },
+    /// A sensor of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        kind: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
     },
 }
 

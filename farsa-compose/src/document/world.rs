@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use crate::name::NAME;
 
@@ -218,6 +219,16 @@ pub enum ObjectKind {
         /// Red, green and blue.
         #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
+    },
+    /// A thing of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        kind: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
     },
 }
 

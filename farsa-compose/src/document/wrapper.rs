@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// A change of values on their way from a sensor or to a motor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -68,5 +69,15 @@ pub enum Wrapper {
         #[serde(default)]
         #[schemars(range(min = 0, max = 4_294_967_295_u32))]
         after: u32,
+    },
+    /// A wrapper of the user's program, with its keys.
+    #[serde(untagged)]
+    #[schemars(skip)]
+    Registered {
+        /// Registered name.
+        kind: String,
+        /// Keys.
+        #[serde(flatten)]
+        keys: Map<String, Value>,
     },
 }

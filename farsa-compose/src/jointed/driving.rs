@@ -10,7 +10,9 @@ use crate::check::source::Source;
 use crate::document::MotorKind;
 use crate::jointed::SpatialWorld;
 use crate::jointed::actuation::{self, is_muscles, is_servo, is_torque, is_velocity};
+use crate::jointed::registered::{self, PartOfSpatial, RegisteredMotor};
 use crate::jointed::scene::Scene;
+use crate::jointed::sensing::ON_WHEELS;
 
 /// A motor of a robot with joints.
 #[derive(Clone, Debug)]
@@ -19,6 +21,7 @@ pub(crate) enum Driving {
     Torque(Vec<TorqueMotor>),
     Servos(Vec<ServoGroup<Vec<ServoRange>>>),
     Muscles(Vec<Muscles>),
+    Registered(RegisteredMotor),
 }
 
 /// Calls a method of the motor of any kind.
@@ -29,6 +32,7 @@ macro_rules! motor {
             Driving::Torque($motor) => $call,
             Driving::Servos($motor) => $call,
             Driving::Muscles($motor) => $call,
+            Driving::Registered($motor) => $call,
         }
     };
 }
@@ -98,6 +102,9 @@ pub(crate) fn motor(kind: &MotorKind, scene: &mut Scene, path: &str, source: &So
                 |joint| Ok(Muscles::new(actuation::muscles(scene, joint, [*tension, *moment_arm], path, source)?));
             Driving::Muscles(joints.into_iter().map(build).collect::<Result<_, Error>>()?)
         }
-        _ => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
+        MotorKind::Registered { kind, keys } => {
+            Driving::Registered(registered::motor(kind, keys, PartOfSpatial { scene, path, source })?)
+        }
+        _ => return Err(source.wrong(path, ON_WHEELS)),
     })
 }

@@ -140,10 +140,16 @@ impl Body for JointedEpisode {
     }
 
     fn sensed(&self, kind: &SensorKind, channel: usize, _: usize) -> ChannelQuantity {
+        if let SensorKind::Registered { kind, keys } = kind {
+            return ChannelQuantity::registered(&self.setup.scene.registry, kind, keys, channel);
+        }
         channel_quantity::sensed(kind, channel, &self.setup.scene)
     }
 
     fn driven(&self, kind: &MotorKind, channel: usize, _: usize) -> ChannelQuantity {
+        if let MotorKind::Registered { kind, keys } = kind {
+            return ChannelQuantity::registered(&self.setup.scene.registry, kind, keys, channel);
+        }
         channel_quantity::driven(kind, channel, &self.setup.scene)
     }
 }
@@ -175,6 +181,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.agents.ledger.steps += 1;
+        self.setup.terms.iter_mut().for_each(|term| term.step(world));
         self.measure(world, false);
         // Terms may be finite in a world that is not, so the bodies are checked separately.
         self.agents.ledger.failed |= !self.is_sane(world);

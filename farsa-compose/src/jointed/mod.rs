@@ -15,7 +15,9 @@ mod frame;
 /// Positions of markers relative to a body.
 mod marker_position;
 /// A point of a body, or a marker.
-mod named_point;
+pub(crate) mod named_point;
+/// Registered sensors and motors.
+mod registered;
 /// Robot, built in or from a file.
 pub(crate) mod robot_model;
 /// Robot with the floor and the objects, and the parts that names refer to.

@@ -44,6 +44,11 @@ impl RobotModel {
             (RobotKind::Model, None) => return Err(source.wrong("/robot", "lacks the key `file`, that of the model")),
             (_, Some(_)) => return Err(source.wrong("/robot/file", "is for the kind `model`")),
             (_, None) if *floating => return Err(source.wrong("/robot/floating", "is for the kind `model`")),
+            (RobotKind::Registered(registered), None) => {
+                let robot = source.registry.joints(&registered.name);
+                let robot = robot.ok_or_else(|| source.wrong("/robot/kind", "is no robot with joints"))?;
+                Self { robot: robot.clone(), frames: Vec::new(), touches: true }
+            }
             (_, None) => {
                 let robot = ArmAndHand::default().robot().map_err(|error| source.wrong("/robot", error))?;
                 Self { robot, frames: Vec::new(), touches: true }

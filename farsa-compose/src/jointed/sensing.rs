@@ -15,6 +15,7 @@ use crate::jointed::eyes::{blobs, image, offset};
 use crate::jointed::frame::{FramePose, FrameVelocity};
 use crate::jointed::marker_position::MarkerPosition;
 use crate::jointed::named_point::NamedPoint;
+use crate::jointed::registered::{self, PartOfSpatial, RegisteredSensor};
 use crate::jointed::scene::Scene;
 use crate::parts::eye::{Eye, eye};
 
@@ -37,6 +38,7 @@ pub(crate) enum Sensing {
     Blobs(ColorBlobs),
     Offset(VisualOffset),
     Constant(Signal<1>),
+    Registered(RegisteredSensor),
 }
 
 /// Calls a method of the sensor of any kind.
@@ -59,6 +61,7 @@ macro_rules! sensor {
             Sensing::Blobs($sensor) => $call,
             Sensing::Offset($sensor) => $call,
             Sensing::Constant($sensor) => $call,
+            Sensing::Registered($sensor) => $call,
         }
     };
 }
@@ -116,6 +119,9 @@ impl Sensing {
         }
     }
 }
+
+/// Reason against a part of robots on wheels.
+pub(crate) const ON_WHEELS: &str = "is for robots on wheels; this one has joints";
 
 /// Builds the sensor at a path of the document.
 pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Source) -> Result<Sensing, Error> {
@@ -180,6 +186,9 @@ pub(crate) fn sensor(kind: &SensorKind, scene: &Scene, path: &str, source: &Sour
         SensorKind::ColorBlobs { eye, colors } => Sensing::Blobs(blobs(eye, colors, scene, path, source)?),
         SensorKind::VisualOffset { eye, of, from } => Sensing::Offset(offset(eye, [of, from], scene, path, source)?),
         SensorKind::Constant { value } => Sensing::Constant(Signal::new([*value as f32])),
-        _ => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
+        SensorKind::Registered { kind, keys } => {
+            Sensing::Registered(registered::sensor(kind, keys, PartOfSpatial { scene, path, source })?)
+        }
+        _ => return Err(source.wrong(path, ON_WHEELS)),
     })
 }

@@ -1,10 +1,13 @@
 //! Abilities that a world must have for a robot with joints.
 
+use farsa_body::Pose;
 use farsa_body::ports::{
     Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _, Vision,
 };
+use farsa_num::Stream;
 use farsa_physics::articulated::{Lane, World};
 
+use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
 use crate::parts::eye::Eye;
 
 /// A world of bodies with joints, in space.
@@ -19,18 +22,56 @@ pub(crate) trait SpatialWorld:
 {
     /// Draws the view of a camera.
     fn show(&self, eye: &mut Eye, out: &mut [f32]);
+    /// Reads a registered sensor.
+    fn sense(&self, sensor: &mut dyn SpatialSensor, out: &mut [f32]);
+    /// Drives a registered motor.
+    fn drive(&mut self, motor: &mut dyn SpatialMotor, y: &[f32]);
+    /// Begins a registered term.
+    fn begin(&self, term: &mut dyn SpatialTerm);
+    /// Updates a registered term after a step.
+    fn step_term(&self, term: &mut dyn SpatialTerm);
+    /// Computes a registered term.
+    fn value(&self, term: &dyn SpatialTerm) -> f64;
+    /// Draws a pose by a registered placement.
+    fn draw(&self, start: &dyn SpatialStart, number: usize, stream: &mut Stream) -> Option<Pose>;
+}
+
+/// Implements the abilities for registered parts.
+macro_rules! registered_parts {
+    () => {
+        fn sense(&self, sensor: &mut dyn SpatialSensor, out: &mut [f32]) {
+            sensor.read(self, out);
+        }
+        fn drive(&mut self, motor: &mut dyn SpatialMotor, y: &[f32]) {
+            motor.drive(y, self);
+        }
+        fn begin(&self, term: &mut dyn SpatialTerm) {
+            term.start(self);
+        }
+        fn step_term(&self, term: &mut dyn SpatialTerm) {
+            term.step(self);
+        }
+        fn value(&self, term: &dyn SpatialTerm) -> f64 {
+            term.value(self)
+        }
+        fn draw(&self, start: &dyn SpatialStart, number: usize, stream: &mut Stream) -> Option<Pose> {
+            start.pose(self, number, stream)
+        }
+    };
 }
 
 impl SpatialWorld for World<f32> {
     fn show(&self, eye: &mut Eye, out: &mut [f32]) {
         eye.read(self, out);
     }
+    registered_parts!();
 }
 
 impl SpatialWorld for Lane<'_> {
     fn show(&self, eye: &mut Eye, out: &mut [f32]) {
         eye.read(self, out);
     }
+    registered_parts!();
 }
 
 #[cfg(feature = "rapier")]
@@ -39,4 +80,5 @@ impl SpatialWorld for farsa_physics::rapier::World {
     fn show(&self, _: &mut Eye, out: &mut [f32]) {
         out.fill(0.0);
     }
+    registered_parts!();
 }

@@ -9,8 +9,10 @@ use farsa_num::{Scalar, Stream, sin_cos};
 use crate::check::source::Source;
 use crate::document::{Document, Placing};
 use crate::jointed::SpatialWorld;
+use crate::jointed::registered::{self, PartOfSpatial};
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::things::What;
+use crate::part::object::SpatialStart;
 use crate::parts::choice::Choice;
 
 /// A placement with its part.
@@ -36,6 +38,7 @@ enum How {
     OneOf(Choice<3>),
     Turned { low: f64, high: f64 },
     Fixed(Pose),
+    Registered(Box<dyn SpatialStart>),
 }
 
 /// Placements of a trial.
@@ -60,7 +63,7 @@ impl Starting {
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
             let (what, reach) = named(&start.place, scene, &path, source)?;
-            let how = how(document, index, what, &path, source)?;
+            let how = how(document, index, what, scene, &path, source)?;
             if rules.iter().any(|other| other.what == what) {
                 return Err(source.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
             }
@@ -107,6 +110,12 @@ impl Starting {
                     continue;
                 }
                 How::Fixed(pose) => *pose,
+                How::Registered(start) => {
+                    // A placement may depend on everything placed earlier.
+                    world.finish_placement();
+                    let Some(pose) = world.draw(&**start, 0, stream) else { return false };
+                    pose
+                }
                 How::OneOf(choice) => {
                     let taken = |point: &[f32; 3]| before.iter().any(|(other, _)| other == point);
                     let Some(point) = choice.take(chosen, taken, |count| stream.below(count)) else { return false };
@@ -173,7 +182,14 @@ fn named(name: &String, scene: &Scene, path: &str, source: &Source) -> Result<(P
 }
 
 /// Reads the placement of a rule.
-fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Source) -> Result<How, Error> {
+fn how(
+    document: &Document,
+    rule: usize,
+    what: Placed,
+    scene: &Scene,
+    path: &str,
+    source: &Source,
+) -> Result<How, Error> {
     let joint = matches!(what, Placed::Joint(_));
     match &document.start[rule].how {
         Placing::Turned { low, high } if joint => {
@@ -184,6 +200,9 @@ fn how(document: &Document, rule: usize, what: Placed, path: &str, source: &Sour
         }
         Placing::Turned { .. } => Err(source.wrong(&format!("{path}/at"), "is for joints; this is none")),
         _ if joint => Err(source.wrong(&format!("{path}/at"), "is for things; a joint is `turned`")),
+        Placing::Registered { at, keys } => {
+            Ok(How::Registered(registered::start(at, keys, PartOfSpatial { scene, path, source })?))
+        }
         Placing::InBox { low, high, apart } => {
             if (0..3).any(|k| low[k] > high[k]) {
                 return Err(source.wrong(path, "has a `low` above its `high`"));

@@ -9,7 +9,10 @@ use crate::check::source::Source;
 use crate::document::RewardKind;
 use crate::jointed::SpatialWorld;
 use crate::jointed::named_point::NamedPoint;
+use crate::jointed::registered::{self, PartOfSpatial};
 use crate::jointed::scene::Scene;
+use crate::jointed::sensing::ON_WHEELS;
+use crate::part::object::SpatialTerm;
 use crate::parts::agents::Agents;
 
 /// Measure of a term.
@@ -35,6 +38,7 @@ enum Measure {
     Effort,
     Control,
     Steps,
+    Registered(Box<dyn SpatialTerm>),
 }
 
 /// A measure with its state in a trial.
@@ -63,15 +67,25 @@ impl Term {
 
     /// Checks if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
-        matches!(self.measure, Measure::Forward(_) | Measure::Progress(..))
+        matches!(self.measure, Measure::Forward(_) | Measure::Progress(..) | Measure::Registered(_))
     }
 
     /// Stores the state at the start of a trial.
     pub(crate) fn begin<W: SpatialWorld>(&mut self, world: &W, markers: &[[f32; 3]]) {
         self.began = self.place(world, markers);
         self.before = self.began;
+        if let Measure::Registered(term) = &mut self.measure {
+            world.begin(&mut **term);
+        }
         if let Measure::Approach(point_named, point) = &self.measure {
             self.far = apart(point_named.position(world, markers), place_of(world, point));
+        }
+    }
+
+    /// Updates a registered measure after a step.
+    pub(crate) fn step<W: SpatialWorld>(&mut self, world: &W) {
+        if let Measure::Registered(term) = &mut self.measure {
+            world.step_term(&mut **term);
         }
     }
 
@@ -143,6 +157,7 @@ impl Term {
                 mean(off.map(|u| u * u).sum(), agents.y.len())
             }
             Measure::Steps => 1.0,
+            Measure::Registered(term) => world.value(&**term),
         }
     }
 
@@ -194,7 +209,10 @@ fn measure(
         RewardKind::Effort {} => Measure::Effort,
         RewardKind::Control {} => Measure::Control,
         RewardKind::Steps {} => Measure::Steps,
-        _ => return Err(source.wrong(path, "is for robots on wheels; this one has joints")),
+        RewardKind::Registered { kind, keys } => {
+            Measure::Registered(registered::term(kind, keys, PartOfSpatial { scene, path, source })?)
+        }
+        _ => return Err(source.wrong(path, ON_WHEELS)),
     })
 }
 

@@ -101,7 +101,11 @@ impl Thing {
                 markers.push(Marker { name: name.clone(), radius, color, at: in_space(at.as_deref(), 0.0) });
                 (0.0, 0.0, 0.0, (What::Marker(markers.len() - 1), None))
             }
-            ObjectKind::Cylinder { .. } | ObjectKind::Disc { .. } | ObjectKind::Rectangle { .. } => {
+            // Registered things were replaced by those of which they consist.
+            ObjectKind::Cylinder { .. }
+            | ObjectKind::Disc { .. }
+            | ObjectKind::Rectangle { .. }
+            | ObjectKind::Registered { .. } => {
                 let why = "is for robots on wheels; next to one with joints are walls, blocks, balls and markers";
                 return Err(source.wrong(path, why));
             }

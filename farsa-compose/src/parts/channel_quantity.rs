@@ -1,6 +1,11 @@
 //! Quantity of a channel, for exports.
 
+use serde_json::{Map, Value};
+
+use crate::check::registry::Registry;
 use crate::document::Wrapper;
+use crate::part::Quantity;
+use crate::part::definition::Build;
 
 /// A quantity with its unit, the values at 0 and 1, and a flag for a linear scale between them.
 pub(crate) struct ChannelQuantity {
@@ -13,6 +18,16 @@ pub(crate) struct ChannelQuantity {
 impl ChannelQuantity {
     pub(crate) fn new(quantity: impl Into<String>, unit: &'static str, ends: [f64; 2]) -> Self {
         Self { quantity: quantity.into(), unit, ends, linear: true }
+    }
+
+    /// Returns the quantity of a channel of a registered sensor or motor.
+    pub(crate) fn registered(registry: &Registry, kind: &str, keys: &Map<String, Value>, channel: usize) -> Self {
+        let quantity = registry.find(kind, |build| match build {
+            Build::Sensor(_, quantity) | Build::Motor(_, quantity) => Some(quantity(keys, channel)),
+            _ => None,
+        });
+        let Quantity { text, unit, ends } = quantity.unwrap_or_default();
+        Self::new(text, unit, ends)
     }
 
     /// Appends the changes of wrappers, in this order.
@@ -45,6 +60,7 @@ fn change(wrapper: &Wrapper) -> String {
         Wrapper::Saturate { low, high } => format!("ends at {low} and {high}"),
         Wrapper::Threshold { above } => format!("1 above {above} and 0 elsewhere"),
         Wrapper::Lesion { channels } => format!("0{}", within(channels)),
+        Wrapper::Registered { kind, .. } => format!("`{kind}`"),
         Wrapper::Stuck { channels, value: Some(value), after } => {
             format!("{value}{} after {after} steps", within(channels))
         }

@@ -22,6 +22,8 @@ pub(crate) mod evonet;
 pub(crate) mod eye;
 /// Infrared tables from files that a document names.
 pub(crate) mod files;
+/// A sensor or motor behind a registered filter.
+pub(crate) mod filtered;
 /// Groups of equal robots, and their populations.
 pub(crate) mod groups;
 /// Networks with wires set by hand.

@@ -12,6 +12,8 @@ use farsa_nn::{
 
 use crate::check::source::Source;
 use crate::document::{Document, NetworkKind, WeightOrder, Wire};
+use crate::part::definition::Build;
+use crate::part::network::{AnyPartNetwork, Built};
 use crate::parts::blocks;
 use crate::parts::ends::Ends;
 use crate::parts::evonet::EvonetNetwork;
@@ -31,6 +33,7 @@ pub(crate) enum AnyNetwork {
     HandWired(HandWired),
     Evonet(EvonetNetwork),
     Reflex(ReflexController),
+    Registered(Box<dyn AnyPartNetwork>),
 }
 
 /// Parameters of a network in the order of a search.
@@ -116,6 +119,16 @@ impl AnyNetwork {
                 }));
                 return Ok((Self::Ctrnn(with(time_constants[0])?), parameters.into()));
             }
+            NetworkKind::Registered { kind, keys } => {
+                let build = source.registry.find(kind, |build| match build {
+                    Build::Network(build) => Some(*build),
+                    _ => None,
+                });
+                let build = build.ok_or_else(|| Error::Other(format!("`{kind}` is no network")))?;
+                let Built { network, parameters } = build(keys, [inputs, outputs], document.world.time_step)?;
+                source.limits.check_network(parameters.len(), network.neurons())?;
+                return Ok((Self::Registered(network), parameters.into()));
+            }
             &NetworkKind::FeedForward { hidden } => Architecture::feed_forward(inputs, hidden as usize, outputs),
             &NetworkKind::Elman { hidden } => Architecture::elman(inputs, hidden as usize, outputs),
             &NetworkKind::Jordan { hidden } => Architecture::jordan(inputs, hidden as usize, outputs),
@@ -171,6 +184,7 @@ impl AnyNetwork {
             }
             Self::HandWired(wired) => wired.copy_parameters(parameters),
             Self::Reflex(_) => true,
+            Self::Registered(network) => network.copy_parameters(parameters),
         }
     }
 
@@ -183,6 +197,7 @@ impl AnyNetwork {
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.parameters(),
             Self::HandWired(wired) => wired.parameters(),
             Self::Reflex(_) => &[],
+            Self::Registered(network) => network.parameters(),
         }
     }
 
@@ -190,6 +205,7 @@ impl AnyNetwork {
     pub(crate) fn values(&self) -> usize {
         let state = match self {
             Self::Perceptron(..) | Self::HandWired(_) | Self::Reflex(_) => 0,
+            Self::Registered(network) => network.neurons(),
             Self::Leaky(leaky) => leaky.layout().state_len(),
             Self::Ctrnn(ctrnn) => ctrnn.layout().state_len(),
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.layout().state_len(),
@@ -201,6 +217,7 @@ impl AnyNetwork {
     pub(crate) fn activations(&self) -> &[f32] {
         match self {
             Self::Perceptron(..) | Self::HandWired(_) | Self::Reflex(_) => &[],
+            Self::Registered(network) => network.activations(),
             Self::Leaky(leaky) => leaky.hidden(),
             Self::Ctrnn(ctrnn) => ctrnn.neuron_outputs(),
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block.activations(),
@@ -220,6 +237,7 @@ impl AnyNetwork {
                 format!("{shape}, {} neurons in continuous time, all linked to all", ctrnn.layout().neurons())
             }
             Self::HandWired(_) | Self::Reflex(_) => format!("{shape}, wired by hand"),
+            Self::Registered(network) => format!("{shape}, {} neurons of a registered network", network.neurons()),
             Self::Block(_) | Self::Evonet(_) => {
                 format!("{shape}, {} neurons in blocks", self.activations().len().saturating_sub(self.inputs()))
             }
@@ -235,6 +253,7 @@ impl AnyNetwork {
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block,
             Self::HandWired(wired) => wired,
             Self::Reflex(reflex) => reflex,
+            Self::Registered(network) => &**network,
         }
     }
 
@@ -246,6 +265,7 @@ impl AnyNetwork {
             Self::Block(block) | Self::Evonet(EvonetNetwork { network: block, .. }) => block,
             Self::HandWired(wired) => wired,
             Self::Reflex(reflex) => reflex,
+            Self::Registered(network) => &mut **network,
         }
     }
 }

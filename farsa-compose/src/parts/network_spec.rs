@@ -35,7 +35,7 @@ impl NetworkSpec {
     pub(crate) fn new(document: &Document, channels: [Vec<usize>; 2], source: &Source) -> Result<Self, Error> {
         let [mut absent, mut about] = [Vec::new(), Vec::new()];
         let [sensor_channels, motor_channels] = channels;
-        let mut spans = |changes: Vec<Option<String>>, names: &[(String, &str)], channels: Vec<usize>| {
+        let mut spans = |changes: Vec<Option<String>>, names: &[(String, String)], channels: Vec<usize>| {
             let mut named = Vec::new();
             for (changes, (name, text)) in changes.into_iter().zip(names) {
                 let Some(changes) = changes else {
@@ -43,7 +43,7 @@ impl NetworkSpec {
                     continue;
                 };
                 named.push(name.clone());
-                about.push(if changes.is_empty() { (*text).to_owned() } else { format!("{text} With {changes}.") });
+                about.push(if changes.is_empty() { text.clone() } else { format!("{text} With {changes}.") });
             }
             spans(named.into_iter().zip(channels))
         };

@@ -58,9 +58,16 @@ impl<K: Channels> Part<K> {
     /// Assigns streams to the noise, from the outer wrapper to the inner one.
     pub(crate) fn reseed(&mut self, streams: &mut NoiseStreams) {
         let Self::Wrapped(wrapped) = self else { return };
-        if let Wrapped::Noisy(noisy) = wrapped {
-            let stream = streams.take(noisy.channels());
-            noisy.reseed(stream);
+        match wrapped {
+            Wrapped::Noisy(noisy) => {
+                let stream = streams.take(noisy.channels());
+                noisy.reseed(stream);
+            }
+            Wrapped::Registered(filtered) => {
+                let stream = streams.take(filtered.channels());
+                filtered.reseed(stream);
+            }
+            _ => {}
         }
         around!(wrapped, part => part.inner_mut().reseed(streams));
     }

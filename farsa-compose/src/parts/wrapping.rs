@@ -10,6 +10,8 @@ use farsa_num::{Domain, Stream};
 
 use crate::check::source::Source;
 use crate::document::Wrapper;
+use crate::part::definition::Build;
+use crate::parts::filtered::Filtered;
 use crate::parts::sizes::MemoryBudget;
 
 /// A sensor or motor in a wrapper.
@@ -22,6 +24,7 @@ pub(crate) enum Wrapped<T> {
     Thresholded(Thresholded<Box<T>, Vec<f32>>),
     Lesioned(Lesioned<Box<T>, Vec<f32>>),
     Stuck(Stuck<Box<T>, Vec<f32>>),
+    Registered(Filtered<Box<T>>),
 }
 
 /// Size of a wrapper itself, in values.
@@ -39,6 +42,15 @@ impl<T: Channels> Wrapped<T> {
         let steps = if let Wrapper::Delay { steps } = wrapper { *steps as usize } else { 0 };
         // Each wrapper has one value per channel, and a delay one more per step.
         budget.take((1 + steps).saturating_mul(inner.channels()) + ITSELF, path, source)?;
+        if let Wrapper::Registered { kind, keys } = wrapper {
+            let build = source.registry.find(kind, |build| match build {
+                Build::Wrapper(build) => Some(*build),
+                _ => None,
+            });
+            let build = build.ok_or_else(|| source.wrong(path, format!("`{kind}` is no wrapper")))?;
+            let filter = build(keys, inner.channels()).map_err(|error| source.at(path, error))?;
+            return Ok(Self::Registered(Filtered::new(Box::new(inner), filter)));
+        }
         Self::around(inner, wrapper).map_err(|error| source.wrong(path, error))
     }
 
@@ -63,6 +75,8 @@ impl<T: Channels> Wrapped<T> {
             Wrapper::Saturate { low, high } => Self::Saturated(Saturated::new(inner, *low as f32, *high as f32)?),
             Wrapper::Threshold { above } => Self::Thresholded(Thresholded::new(inner, *above as f32)?),
             Wrapper::Lesion { channels } => Self::Lesioned(Lesioned::new(inner, chosen(channels))?),
+            // Built by `new`.
+            Wrapper::Registered { .. } => return Err(ChannelError::Groups { field: "filters", count: 0, size: 1 }),
             Wrapper::Stuck { channels, value, after } => {
                 let at = value.map_or(StuckAt::Last, |value| StuckAt::Value(value as f32));
                 Self::Stuck(Stuck::new(inner, chosen(channels), at, *after)?)
@@ -82,6 +96,7 @@ macro_rules! around {
             $crate::parts::wrapping::Wrapped::Thresholded($part) => $call,
             $crate::parts::wrapping::Wrapped::Lesioned($part) => $call,
             $crate::parts::wrapping::Wrapped::Stuck($part) => $call,
+            $crate::parts::wrapping::Wrapped::Registered($part) => $call,
         }
     };
 }

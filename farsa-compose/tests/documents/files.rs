@@ -68,7 +68,7 @@ fn sixteen_files_are_stored_once_each() {
 fn a_bare_name_is_in_the_working_directory() {
     let text = format!("{REST}{}", sensor("one", 0..0)).replace("walls.sam", "Cargo.toml");
     for folder in ["", "."] {
-        let error = (FILES.read)("own.toml", &text, Some(Path::new(folder)), farsa_lab::strategy::strategies());
+        let error = (FILES.read)("own.toml", &text, Some(Path::new(folder)), farsa_lab::strategy::strategies().into());
         let error = error.err().expect("an error").to_string();
         assert!(error.contains("`sensors.1.tables.walls`: Cargo.toml: "), "{error}");
     }
@@ -104,11 +104,11 @@ fn an_experiment_has_the_name_of_its_file() {
     let made = made.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((made.name(), made.summary(), made.definition()), ("own-2", "drives about", Some(&*text)));
     assert_eq!(made.strategy("").name(), "truncation");
-    let schema = (FILES.schema)();
+    let schema = (FILES.schema)(&[]).expect("a schema");
     assert!(schema.ends_with("}\n") && schema.contains("\"unevaluatedProperties\": false"), "{schema:.200}");
     for template in FILES.templates {
         let file = format!("{}.toml", template.name);
-        assert!((FILES.read)(&file, template.text, None, farsa_lab::strategy::strategies()).is_ok(), "{file}");
+        assert!((FILES.read)(&file, template.text, None, farsa_lab::strategy::strategies().into()).is_ok(), "{file}");
     }
 }
 

@@ -167,7 +167,7 @@ impl<'e> Invocation<'e, '_> {
             }
             Command::New(args) => self.new_file(&args),
             Command::Check(args) => self.check(&args),
-            Command::Schema => say(&(laboratory.files()?.schema)()),
+            Command::Schema => say(&(laboratory.files()?.schema)(laboratory.vocabulary().parts)?),
             Command::Run(args @ RunArgs { replications: Some(count), .. }) => {
                 let summary = match args.groups {
                     None => Some(self.replicate(&args, count, args.replication)?),

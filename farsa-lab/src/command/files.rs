@@ -37,7 +37,7 @@ impl Invocation<'_, '_> {
         };
         let path = PathBuf::from(format!("{}{FILE}", file.strip_suffix(FILE).unwrap_or(file)));
         // The file name becomes the name of the experiment, so it is checked first.
-        (self.laboratory.files()?.read)(&path.display().to_string(), text, None, self.laboratory.strategies())?;
+        (self.laboratory.files()?.read)(&path.display().to_string(), text, None, self.laboratory.vocabulary())?;
         create_results(&[(path.clone(), text)])?;
         let (program, path) = (self.program, path.display());
         let next = format!("{path}: from `{name}`\n{program} check {path}\n{program} run {path} --generations 20\n");

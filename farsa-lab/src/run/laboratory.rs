@@ -7,6 +7,7 @@ use crate::escaped::Quoted;
 use crate::run::config_file::ConfigFile;
 use crate::run::experiment::Experiment;
 use crate::run::imported_file::ImportedFile;
+use crate::run::vocabulary::{Part, Vocabulary};
 use crate::store::bounded;
 use crate::strategy::definition::StrategyDefinition;
 use crate::strategy::known;
@@ -30,22 +31,19 @@ pub struct Laboratory<'e> {
     experiments: Vec<&'e dyn Experiment>,
     strategies: Vec<&'static dyn StrategyDefinition>,
     files: Option<ExperimentFiles>,
+    parts: Vec<Part>,
     module: Option<(&'static [u8], &'static [&'static str])>,
 }
 
-/// Builds an experiment from the text of a file with the given name. The text may use the given strategies.
+/// Builds an experiment from the text of a file with the given name. The text may use the given strategies and parts.
 ///
 /// If the text refers to other files, they are read from `folder`. Note that the text stored in a run has no folder, since
 /// it already contains everything and reads no file.
 ///
 /// # Errors
 /// Returns an error with file, line and key if the text is invalid, or an error in one of the files that it refers to.
-pub type ReadExperiment = fn(
-    name: &str,
-    text: &str,
-    folder: Option<&Path>,
-    strategies: &[&'static dyn StrategyDefinition],
-) -> Result<Box<dyn Experiment>, Error>;
+pub type ReadExperiment =
+    fn(name: &str, text: &str, folder: Option<&Path>, vocabulary: Vocabulary<'_>) -> Result<Box<dyn Experiment>, Error>;
 
 /// Converts the content of `file`, in another format, into the text of an experiment file `name`.
 ///
@@ -58,8 +56,8 @@ pub type ImportExperiment = fn(file: &str, name: &str, text: &str) -> Result<Imp
 pub struct ExperimentFiles {
     /// Builds an experiment from a text.
     pub read: ReadExperiment,
-    /// Generates the schema of the files, as JSON.
-    pub schema: fn() -> String,
+    /// Generates the schema of files with these parts, as JSON.
+    pub schema: fn(parts: &[Part]) -> Result<String, Error>,
     /// Templates for a new file. Put the default template first.
     pub templates: &'static [Template],
     /// Converts a configuration of the 2013 program into such a file. Use `None` if your program does not need
@@ -88,7 +86,8 @@ impl<'e> Laboratory<'e> {
     ///
     /// This order is also the one in which experiments are listed.
     pub fn new(experiments: &[&'e dyn Experiment]) -> Self {
-        Self { experiments: experiments.to_vec(), strategies: known::strategies().to_vec(), files: None, module: None }
+        let strategies = known::strategies().to_vec();
+        Self { experiments: experiments.to_vec(), strategies, files: None, parts: Vec::new(), module: None }
     }
 
     /// Adds a strategy for `--strategy NAME`. If there already is a strategy with this name, it is replaced.
@@ -103,6 +102,15 @@ impl<'e> Laboratory<'e> {
     #[must_use]
     pub fn with_files(self, files: ExperimentFiles) -> Self {
         Self { files: Some(files), ..self }
+    }
+
+    /// Adds a part that experiment files may name, such as a sensor of your crate.
+    ///
+    /// Parts are created by the crate that reads the files. See `farsa_compose::part`.
+    #[must_use]
+    pub fn with_part(mut self, part: Part) -> Self {
+        self.parts.push(part);
+        self
     }
 
     /// Adds interactive pages for `farsa live`.
@@ -129,6 +137,11 @@ impl<'e> Laboratory<'e> {
         &self.strategies
     }
 
+    /// Returns the strategies and parts that a file may name.
+    pub(crate) fn vocabulary(&self) -> Vocabulary<'_> {
+        Vocabulary { strategies: &self.strategies, parts: &self.parts }
+    }
+
     /// Returns the functions that read experiments from files.
     ///
     /// # Errors
@@ -141,7 +154,7 @@ impl<'e> Laboratory<'e> {
     ///
     /// The experiment is leaked. A process reads few of them.
     fn described(&self, name: &str, text: &str, folder: Option<&Path>) -> Result<&'e dyn Experiment, Error> {
-        let read = (self.files()?.read)(name, text, folder, &self.strategies);
+        let read = (self.files()?.read)(name, text, folder, self.vocabulary());
         Ok(Box::leak(read.map_err(Error::into_usage)?))
     }
 
@@ -230,18 +243,13 @@ mod tests {
     use super::*;
 
     /// Returns its arguments as an error.
-    fn read(
-        name: &str,
-        text: &str,
-        folder: Option<&Path>,
-        _: &[&'static dyn StrategyDefinition],
-    ) -> Result<Box<dyn Experiment>, Error> {
+    fn read(name: &str, text: &str, folder: Option<&Path>, _: Vocabulary<'_>) -> Result<Box<dyn Experiment>, Error> {
         Err(Error::Other(format!("{name}, {text}, {folder:?}")))
     }
 
     #[test]
     fn files_are_named_without_extension_and_in_other_capitals() {
-        let files = ExperimentFiles { read, schema: String::new, templates: &[], import: None };
+        let files = ExperimentFiles { read, schema: |_| Ok(String::new()), templates: &[], import: None };
         let laboratory = Laboratory::new(&[]).with_files(files);
         let folder = std::env::temp_dir().join(format!("farsa-names-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
@@ -272,7 +280,7 @@ mod tests {
     /// A run directory may be untrusted, so its text cannot name files of the current folder.
     #[test]
     fn only_files_of_the_user_have_a_folder() {
-        let files = ExperimentFiles { read, schema: String::new, templates: &[], import: None };
+        let files = ExperimentFiles { read, schema: |_| Ok(String::new()), templates: &[], import: None };
         let laboratory = Laboratory::new(&[]).with_files(files);
         let said = |found: Result<&dyn Experiment, Error>| found.err().map(|error| error.to_string());
         for name in ["own", "below/own", "/own"] {

@@ -67,6 +67,8 @@ mod tests;
 /// Tables for a terminal.
 #[cfg(feature = "command")]
 pub(crate) mod text_table;
+/// Words that experiment files may use in addition to those of their format.
+mod vocabulary;
 /// Ranks except the first: they evaluate the same search and write no files.
 #[cfg(feature = "command")]
 pub(crate) mod worker;
@@ -78,4 +80,5 @@ mod wrong_configuration;
 pub use experiment::{Experiment, SimpleExperiment};
 pub use imported_file::{ImportedFile, LeftOut};
 pub use laboratory::{ExperimentFiles, ImportExperiment, Laboratory, ReadExperiment, Template};
+pub use vocabulary::{Part, Vocabulary};
 pub use world_choice::ENGINE;

@@ -1,0 +1,54 @@
+//! Abilities that a world must have for robots on wheels.
+
+use farsa_lab::advanced::PlanarWorld;
+
+use farsa_body::Pose;
+use farsa_num::Stream;
+use farsa_physics::arena::{Lane, World};
+
+use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
+
+/// A world of robots in a plane, in which registered parts work.
+pub(crate) trait ArenaWorld: PlanarWorld {
+    /// Reads a registered sensor.
+    fn sense(&self, sensor: &mut dyn PlanarSensor, out: &mut [f32]);
+    /// Drives a registered motor.
+    fn drive(&mut self, motor: &mut dyn PlanarMotor, y: &[f32]);
+    /// Begins a registered term.
+    fn begin(&self, term: &mut dyn PlanarTerm);
+    /// Updates a registered term after a step.
+    fn step_term(&self, term: &mut dyn PlanarTerm);
+    /// Computes a registered term.
+    fn value(&self, term: &dyn PlanarTerm) -> f64;
+    /// Draws a pose by a registered placement.
+    fn draw(&self, start: &dyn PlanarStart, number: usize, stream: &mut Stream) -> Option<Pose>;
+}
+
+macro_rules! arena_world {
+    ($world:ty) => {
+        impl ArenaWorld for $world {
+            fn sense(&self, sensor: &mut dyn PlanarSensor, out: &mut [f32]) {
+                sensor.read(self, out);
+            }
+            fn drive(&mut self, motor: &mut dyn PlanarMotor, y: &[f32]) {
+                motor.drive(y, self);
+            }
+            fn begin(&self, term: &mut dyn PlanarTerm) {
+                term.start(self);
+            }
+            fn step_term(&self, term: &mut dyn PlanarTerm) {
+                term.step(self);
+            }
+            fn value(&self, term: &dyn PlanarTerm) -> f64 {
+                term.value(self)
+            }
+            fn draw(&self, start: &dyn PlanarStart, number: usize, stream: &mut Stream) -> Option<Pose> {
+                start.pose(self, number, stream)
+            }
+        }
+    };
+}
+arena_world!(World);
+arena_world!(Lane<'_>);
+#[cfg(feature = "rapier")]
+arena_world!(farsa_physics::rapier::ArenaWorld);

@@ -1,0 +1,112 @@
+//! Registered parts of a document, with the defaults of their keys.
+
+use farsa_lab::Error;
+use serde_json::{Map, Value};
+
+use crate::check::registry::place;
+use crate::check::source::Source;
+use crate::document::{
+    Document, MotorKind, NetworkKind, ObjectKind, Placing, RewardKind, RobotKind, SensorKind, Wrapper,
+};
+use crate::part::definition::{Build, Definition};
+
+/// Adds the defaults of registered parts to a document.
+///
+/// # Errors
+/// [`Error::Setting`] for keys that the part refuses.
+pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), Error> {
+    let completed = |what: &'static str, kind: &str, keys: &mut Map<String, Value>, path: &str| {
+        let of_kind = |definition: &&Definition| definition.name == kind && place(&definition.build).2 == what;
+        let definition = source.registry.definitions.iter().find(of_kind);
+        let definition = definition.ok_or_else(|| source.wrong(path, format!("`{kind}` is no {what}")))?;
+        *keys = (definition.complete)(keys).map_err(|why| source.wrong(path, why))?;
+        Ok::<(), Error>(())
+    };
+    let wrapped = |wrappers: &mut [Wrapper], path: &str| {
+        for (number, wrapper) in wrappers.iter_mut().enumerate() {
+            if let Wrapper::Registered { kind, keys } = wrapper {
+                completed("wrapper", kind, keys, &format!("{path}/wrappers/{number}"))?;
+            }
+        }
+        Ok::<(), Error>(())
+    };
+    for (index, sensor) in document.sensors.iter_mut().enumerate() {
+        let path = format!("/sensors/{index}");
+        wrapped(&mut sensor.wrappers, &path)?;
+        if let SensorKind::Registered { kind, keys } = &mut sensor.kind {
+            completed("sensor", kind, keys, &path)?;
+        }
+    }
+    for (index, motor) in document.motors.iter_mut().enumerate() {
+        let path = format!("/motors/{index}");
+        wrapped(&mut motor.wrappers, &path)?;
+        if let MotorKind::Registered { kind, keys } = &mut motor.kind {
+            completed("motor", kind, keys, &path)?;
+        }
+    }
+    for (index, term) in document.reward.iter_mut().enumerate() {
+        if let RewardKind::Registered { kind, keys } = &mut term.kind {
+            completed("term", kind, keys, &format!("/reward/{index}"))?;
+        }
+    }
+    for (index, start) in document.start.iter_mut().enumerate() {
+        if let Placing::Registered { at, keys } = &mut start.how {
+            completed("placement", at, keys, &format!("/start/{index}"))?;
+        }
+    }
+    if let NetworkKind::Registered { kind, keys } = &mut document.network.kind {
+        completed("network", kind, keys, "/network")?;
+    }
+    for (index, object) in document.objects.iter_mut().enumerate() {
+        if let ObjectKind::Registered { kind, keys } = &mut object.kind {
+            completed("thing", kind, keys, &format!("/objects/{index}"))?;
+        }
+    }
+    let groups = document.robots.iter_mut().map(|group| &mut group.robot);
+    for robot in document.robot.iter_mut().chain(groups) {
+        if let RobotKind::Registered(known) = &mut robot.kind {
+            known.joints =
+                source.registry.find(&known.name, |build| matches!(build, Build::Joints(_)).then_some(())).is_some();
+        }
+    }
+    Ok(())
+}
+
+/// Replaces registered things by those of which they consist.
+///
+/// # Errors
+/// [`Error::Setting`] for a thing that cannot be built.
+pub(crate) fn expand(document: &mut Document, source: &Source) -> Result<(), Error> {
+    if !document.objects.iter().any(|object| matches!(object.kind, ObjectKind::Registered { .. })) {
+        return Ok(());
+    }
+    // The first parts keep the numbers of the file, so messages about them have their places.
+    let mut further = Vec::new();
+    for (index, object) in document.objects.iter_mut().enumerate() {
+        let ObjectKind::Registered { kind, keys } = &object.kind else { continue };
+        let path = format!("/objects/{index}");
+        let build =
+            source.registry.find(kind, |build| if let Build::Thing(build) = build { Some(build) } else { None });
+        let build = build.ok_or_else(|| source.wrong(&path, format!("`{kind}` is no thing")))?;
+        let mut things = build(keys, object).map_err(|error| source.at(&path, error))?;
+        if things.is_empty() {
+            return Err(source.wrong(&path, format!("`{kind}` consists of no things")));
+        }
+        if things.iter().any(|thing| matches!(thing.kind, ObjectKind::Registered { .. })) {
+            return Err(source.wrong(&path, format!("`{kind}` consists of registered things")));
+        }
+        further.extend(things.split_off(1));
+        *object = things.remove(0);
+    }
+    document.objects.append(&mut further);
+    Ok(())
+}
+
+/// Returns the function that builds a part, or an error if the part is for robots of the other kind.
+pub(crate) fn builder<'r, T>(
+    (kind, path, source): (&str, &str, &'r Source),
+    other: &'static str,
+    build: impl Fn(&'r Build) -> Option<Option<T>>,
+) -> Result<T, Error> {
+    source.registry.find(kind, build).flatten().ok_or_else(|| source.wrong(path, other))
+}

@@ -1,0 +1,154 @@
+//! Parts of the user's program, and the schema with their keys.
+
+use std::sync::{Arc, LazyLock};
+
+use farsa_body::robot::Robot;
+use farsa_body::robots::MobileRobot;
+use farsa_lab::Error;
+use farsa_lab::advanced::Part;
+use serde_json::{Value, json};
+
+use crate::check::schema::{SCHEMA, scene_schema};
+use crate::name::is_name;
+use crate::part::definition::{Build, Definition};
+
+/// Parts that a file may name in addition to those of the format.
+#[derive(Clone, Debug)]
+pub(crate) struct Registry {
+    pub(crate) definitions: Vec<Definition>,
+    /// Schema of a file, and of a file with objects only.
+    pub(crate) schemas: Arc<[Value; 2]>,
+}
+
+/// Registry without parts, whose schemas are built once because each takes a megabyte.
+static PLAIN: LazyLock<Registry> = LazyLock::new(|| {
+    let schemas = [SCHEMA.clone(), scene_schema(&SCHEMA)];
+    Registry { definitions: Vec::new(), schemas: Arc::new(schemas) }
+});
+
+impl Default for Registry {
+    fn default() -> Self {
+        PLAIN.clone()
+    }
+}
+
+/// Name in the schema of the kinds of a definition, the key that selects one, and the name in messages.
+pub(crate) fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
+    match build {
+        Build::Sensor(..) => ("Sensor", "kind", "sensor"),
+        Build::Motor(..) => ("Motor", "kind", "motor"),
+        Build::Term(_) => ("Reward", "kind", "term"),
+        Build::Start(_) => ("Start", "at", "placement"),
+        Build::Wrapper(_) => ("Wrapper", "kind", "wrapper"),
+        Build::Network(_) => ("Network", "kind", "network"),
+        Build::Thing(_) => ("Object", "kind", "thing"),
+        Build::Wheels(_) | Build::Joints(_) => ("RobotKind", "", "robot"),
+    }
+}
+
+impl Registry {
+    /// Collects parts, of which those of other crates are ignored.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a name that is invalid or taken, and for keys that a file cannot have.
+    pub(crate) fn new(parts: &[Part]) -> Result<Self, Error> {
+        let definitions = parts.iter().filter_map(Part::definition::<Definition>).cloned();
+        let definitions: Vec<Definition> = definitions.collect();
+        if definitions.is_empty() {
+            return Ok(Self::default());
+        }
+        let mut schema = SCHEMA.clone();
+        for definition in &definitions {
+            let (kinds, tag, what) = place(&definition.build);
+            let wrong = |why: &str| Error::Usage(format!("the {what} `{}` of this program {why}", definition.name));
+            if !is_name(definition.name) {
+                return Err(wrong("has no valid name: 1 to 40 lower-case letters, digits, - and _"));
+            }
+            if tag.is_empty() {
+                add_word(&mut schema, definition.name).map_err(wrong)?;
+            } else {
+                add_branch(&mut schema, definition, [kinds, tag]).map_err(|why| wrong(&why))?;
+            }
+        }
+        let scene = scene_schema(&schema);
+        Ok(Self { definitions, schemas: Arc::new([schema, scene]) })
+    }
+
+    /// Returns the first value that `build` gives for a definition of this name.
+    pub(crate) fn find<'r, T>(&'r self, name: &str, build: impl Fn(&'r Build) -> Option<T>) -> Option<T> {
+        let named = self.definitions.iter().filter(|definition| definition.name == name);
+        named.map(|definition| &definition.build).find_map(build)
+    }
+
+    /// Finds a robot on wheels.
+    pub(crate) fn wheels(&self, name: &str) -> Option<&MobileRobot> {
+        self.find(name, |build| if let Build::Wheels(robot) = build { Some(&**robot) } else { None })
+    }
+
+    /// Finds a robot with joints.
+    pub(crate) fn joints(&self, name: &str) -> Option<&Robot> {
+        self.find(name, |build| if let Build::Joints(robot) = build { Some(&**robot) } else { None })
+    }
+}
+
+/// Adds a word to the kinds of robots.
+fn add_word(schema: &mut Value, name: &str) -> Result<(), &'static str> {
+    let kinds = schema.pointer_mut("/$defs/RobotKind/oneOf").and_then(Value::as_array_mut);
+    let kinds = kinds.ok_or("has no place in the schema")?;
+    if kinds.iter().any(|kind| kind["const"] == name) {
+        return Err("has the name of another one");
+    }
+    kinds.push(json!({ "const": name, "type": "string", "description": "A robot of the user's program." }));
+    Ok(())
+}
+
+/// Adds the keys of a part to the kinds of a table.
+fn add_branch(schema: &mut Value, definition: &Definition, [kinds, tag]: [&str; 2]) -> Result<(), String> {
+    let name = definition.name;
+    let mut own = (definition.schema)().to_value();
+    let shared = own.get_mut("$defs").map(Value::take).unwrap_or_default();
+    refer(&mut own, name);
+    let table = schema.pointer(&format!("/$defs/{kinds}")).ok_or("has no place in the schema")?;
+    let common: Vec<String> =
+        table["properties"].as_object().into_iter().flatten().map(|(key, _)| key.clone()).collect();
+    let branches = table["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
+    if branches.iter().any(|branch| branch["properties"][tag]["const"] == name) {
+        return Err("has the name of another one".into());
+    }
+    let mut properties = own.get_mut("properties").map_or_else(|| json!({}), Value::take);
+    let keys = properties.as_object_mut().ok_or("has settings that are no struct with named fields")?;
+    if let Some(key) = keys.keys().find(|key| *key == tag || common.contains(key)) {
+        return Err(format!("has the key `{key}`, which each {} has already", kinds.to_lowercase()));
+    }
+    keys.insert(tag.into(), json!({ "type": "string", "const": name }));
+    let mut required = vec![Value::from(tag)];
+    required.extend(own["required"].as_array().cloned().unwrap_or_default());
+    let about = own["description"].as_str().unwrap_or_default();
+    let branch = json!({ "type": "object", "description": about, "properties": properties, "required": required });
+    let list = schema.pointer_mut(&format!("/$defs/{kinds}/oneOf")).and_then(Value::as_array_mut);
+    list.ok_or("has no place in the schema")?.push(branch);
+    let Value::Object(shared) = shared else { return Ok(()) };
+    let definitions = schema.get_mut("$defs").and_then(Value::as_object_mut).ok_or("has no place in the schema")?;
+    for (key, mut value) in shared {
+        refer(&mut value, name);
+        definitions.insert(format!("{name}.{key}"), value);
+    }
+    Ok(())
+}
+
+/// Renames references, so that types of two parts may have the same name.
+fn refer(value: &mut Value, name: &str) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                let target = value.as_str().and_then(|target| target.strip_prefix("#/$defs/"));
+                match target.map(|target| format!("#/$defs/{name}.{target}")).filter(|_| key == "$ref") {
+                    Some(target) => *value = target.into(),
+                    None => refer(value, name),
+                }
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| refer(item, name)),
+        _ => {}
+    }
+}
