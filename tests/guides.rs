@@ -11,14 +11,14 @@ use std::sync::OnceLock;
 
 mod readers;
 
-const GUIDES: [&str; 4] = ["new-robot", "new-sensor", "new-fitness", "new-experiment"];
+const GUIDES: [&str; 4] = ["new-robot", "new-sensor", "own-part", "new-experiment"];
 
-/// The programs of the guides: guide, the reader's file, our file.
+/// The programs of the guides: guide, the reader's file, our example.
 const PROGRAMS: [[&str; 3]; 4] = [
-    ["new-robot", "src/main.rs", "new_robot.rs"],
-    ["new-sensor", "src/main.rs", "new_sensor.rs"],
-    ["new-fitness", "src/main.rs", "new_fitness.rs"],
-    ["new-experiment", "src/main.rs", "new_experiment.rs"],
+    ["new-robot", "src/main.rs", "new_robot"],
+    ["new-sensor", "src/main.rs", "new_sensor"],
+    ["own-part", "src/main.rs", "own_part"],
+    ["new-experiment", "src/main.rs", "new_experiment"],
 ];
 
 fn root() -> &'static Path {
@@ -28,6 +28,14 @@ fn root() -> &'static Path {
 fn read(path: impl AsRef<Path>) -> String {
     let path = root().join(path);
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Returns the path of an example. That of parts is also what `farsa new --parts` writes.
+fn source(example: &str) -> String {
+    if example == "own_part" {
+        return "farsa-compose/templates/parts/main.rs".into();
+    }
+    format!("examples/guide/{example}.rs")
 }
 
 fn guide(name: &str) -> String {
@@ -84,9 +92,9 @@ fn the_programs_of_the_guides_are_ours() {
     for [name, file, ours] in PROGRAMS {
         let files = written(name);
         let theirs = files.get(file).unwrap_or_else(|| panic!("{name}.md has no {file}"));
-        let ours_text = read(format!("examples/guide/{ours}"));
+        let ours_text = read(source(ours));
         for (number, (a, b)) in theirs.lines().zip(ours_text.lines()).enumerate() {
-            assert_eq!(a, b, "{name}.md, {file} line {}, is not that of examples/guide/{ours}", number + 1);
+            assert_eq!(a, b, "{name}.md, {file} line {}, is not that of the example {ours}", number + 1);
         }
         assert_eq!(theirs.lines().count(), ours_text.lines().count(), "{name}.md, {file}");
     }
@@ -94,7 +102,15 @@ fn the_programs_of_the_guides_are_ours() {
     assert_eq!(known, PROGRAMS.len(), "a guide has a program that is not checked");
     for name in fs::read_dir(root().join("examples/guide")).expect("the programs") {
         let name = name.expect("a file").file_name();
-        assert!(PROGRAMS.iter().any(|[_, _, ours]| name == *ours), "{name:?} belongs to no guide");
+        assert!(PROGRAMS.iter().any(|[_, _, ours]| name == *format!("{ours}.rs")), "{name:?} belongs to no guide");
+    }
+}
+
+#[test]
+fn the_crate_that_farsa_new_writes_is_that_of_the_guide() {
+    for (file, template) in [("Cargo.toml", "dependencies.toml"), ("seek.toml", "seek.toml")] {
+        let shown = blocks(&guide("own-part")).into_iter().find(|block| block.file == file).expect("a block").text;
+        assert_eq!(shown, read(format!("farsa-compose/templates/parts/{template}")), "{file}");
     }
 }
 
@@ -353,7 +369,7 @@ fn built() -> &'static Path {
         // The same selection as in a test of the workspace, so that no dependency is compiled for other features.
         build.args(["build", "--workspace", "--offline", "--quiet", "--bin", "farsa"]).current_dir(root());
         for [_, _, ours] in PROGRAMS {
-            build.args(["--example", ours.trim_end_matches(".rs")]);
+            build.args(["--example", ours]);
         }
         let output = build.env("CARGO_TARGET_DIR", target()).stdin(Stdio::null()).output().expect("cargo");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -376,7 +392,7 @@ fn run(name: &str, commands: &str, folder: &Path, place: &Path, builder: Builder
         bash.env("FARSA", program("farsa"));
         for [_, file, ours] in PROGRAMS.into_iter().filter(|[guide, ..]| *guide == name) {
             let variable = file.rsplit('/').next().unwrap_or(file).trim_end_matches(".rs");
-            bash.env(format!("FARSA_{variable}"), program(&format!("examples/{}", ours.trim_end_matches(".rs"))));
+            bash.env(format!("FARSA_{variable}"), program(&format!("examples/{}", ours)));
         }
     }
     script += commands;

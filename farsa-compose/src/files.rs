@@ -19,7 +19,21 @@ use crate::limits::Limits;
 ///     Laboratory::new(&[]).with_files(farsa_compose::FILES).main()
 /// }
 /// ```
-pub const FILES: ExperimentFiles = ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, import: None };
+pub const FILES: ExperimentFiles =
+    ExperimentFiles { read, schema: as_text, templates: &TEMPLATES, crate_with_parts: &CRATE_WITH_PARTS, import: None };
+
+/// A sensor and a term, as in docs/guide/own-part.md.
+const CRATE_WITH_PARTS: [(&str, &str); 3] = [
+    (
+        "Cargo.toml",
+        concat!(
+            "[package]\nname = \"NAME\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n",
+            include_str!("../templates/parts/dependencies.toml")
+        ),
+    ),
+    ("src/main.rs", include_str!("../templates/parts/main.rs")),
+    ("seek.toml", include_str!("../templates/parts/seek.toml")),
+];
 
 const TEMPLATES: [Template; 3] = [
     Template {

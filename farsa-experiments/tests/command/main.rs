@@ -23,6 +23,7 @@ mod memory;
 mod merge;
 mod numbers;
 mod own;
+mod parts;
 mod replications;
 mod report;
 mod robot;

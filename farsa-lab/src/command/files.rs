@@ -1,6 +1,7 @@
 //! `farsa new` and `farsa check`: files that describe experiments.
 
 use std::fmt::Write as _;
+use std::fs;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 
@@ -9,7 +10,7 @@ use crate::command::cli::{say, tell};
 use crate::command::connections::Connections;
 use crate::command::invocation::Invocation;
 use crate::error::Error;
-use crate::escaped::escaped;
+use crate::escaped::{Quoted, escaped};
 use crate::json::pretty;
 use crate::run::laboratory::{FILE, Template};
 use crate::store::own_output::write_outputs;
@@ -18,6 +19,9 @@ use crate::store::replace::create_results;
 impl Invocation<'_, '_> {
     /// Writes an experiment file from a template.
     pub(super) fn new_file(&self, args: &NewArgs) -> Result<(), Error> {
+        if args.parts {
+            return self.new_crate(args.name.as_deref().unwrap_or_default());
+        }
         let templates = self.laboratory.files()?.templates;
         if args.from.as_deref() == Some("list") {
             return tell(&list(templates));
@@ -41,6 +45,32 @@ impl Invocation<'_, '_> {
         create_results(&[(path.clone(), text)])?;
         let (program, path) = (self.program, path.display());
         let next = format!("{path}: from `{name}`\n{program} check {path}\n{program} run {path} --generations 20\n");
+        if self.quiet { Ok(()) } else { tell(&next) }
+    }
+
+    /// Writes a crate with custom parts into a new folder.
+    fn new_crate(&self, name: &str) -> Result<(), Error> {
+        let files = self.laboratory.files()?.crate_with_parts;
+        if files.is_empty() {
+            return Err(Error::Usage("--parts: this program has no crate with parts".into()));
+        }
+        let letter = |letter: char| letter.is_ascii_lowercase() || letter.is_ascii_digit() || "-_".contains(letter);
+        if !name.starts_with(|first: char| first.is_ascii_lowercase()) || !name.chars().all(letter) || name.len() > 40 {
+            let why = "is no name of a crate: 1 to 40 lower-case letters, digits, - and _, the first a letter";
+            return Err(Error::Usage(format!("{} {why}", Quoted(name))));
+        }
+        let folder = PathBuf::from(name);
+        let taken = |error: io::Error| match error.kind() {
+            io::ErrorKind::AlreadyExists => Error::Usage(format!("{name}: there is one already")),
+            _ => Error::io("make", &folder)(error),
+        };
+        fs::create_dir(&folder).map_err(taken)?;
+        fs::create_dir(folder.join("src")).map_err(Error::io("make", &folder))?;
+        let files = files.iter().map(|(path, text)| (folder.join(path), text.replace("NAME", name)));
+        create_results(&files.collect::<Vec<_>>())?;
+        let next = format!(
+            "{name}: a crate with a sensor and a term\ncd {name}\ncargo run -- run seek.toml --generations 20\n"
+        );
         if self.quiet { Ok(()) } else { tell(&next) }
     }
 

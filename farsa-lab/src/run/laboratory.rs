@@ -60,6 +60,8 @@ pub struct ExperimentFiles {
     pub schema: fn(parts: &[Part]) -> Result<String, Error>,
     /// Templates for a new file. Put the default template first.
     pub templates: &'static [Template],
+    /// Files of a crate with custom parts, for `farsa new --parts`, by their paths in it. `NAME` is replaced by its name.
+    pub crate_with_parts: &'static [(&'static str, &'static str)],
     /// Converts a configuration of the 2013 program into such a file. Use `None` if your program does not need
     /// `farsa import FILE.ini`.
     pub import: Option<ImportExperiment>,
@@ -249,7 +251,13 @@ mod tests {
 
     #[test]
     fn files_are_named_without_extension_and_in_other_capitals() {
-        let files = ExperimentFiles { read, schema: |_| Ok(String::new()), templates: &[], import: None };
+        let files = ExperimentFiles {
+            read,
+            schema: |_| Ok(String::new()),
+            templates: &[],
+            crate_with_parts: &[],
+            import: None,
+        };
         let laboratory = Laboratory::new(&[]).with_files(files);
         let folder = std::env::temp_dir().join(format!("farsa-names-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
@@ -280,7 +288,13 @@ mod tests {
     /// A run directory may be untrusted, so its text cannot name files of the current folder.
     #[test]
     fn only_files_of_the_user_have_a_folder() {
-        let files = ExperimentFiles { read, schema: |_| Ok(String::new()), templates: &[], import: None };
+        let files = ExperimentFiles {
+            read,
+            schema: |_| Ok(String::new()),
+            templates: &[],
+            crate_with_parts: &[],
+            import: None,
+        };
         let laboratory = Laboratory::new(&[]).with_files(files);
         let said = |found: Result<&dyn Experiment, Error>| found.err().map(|error| error.to_string());
         for name in ["own", "below/own", "/own"] {

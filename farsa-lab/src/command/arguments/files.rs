@@ -15,6 +15,9 @@ pub(crate) struct NewArgs {
     /// The template, or `list` for the names of all [default: the first]
     #[arg(long, value_name = "TEMPLATE")]
     pub(crate) from: Option<String>,
+    /// Write a crate with custom parts
+    #[arg(long, conflicts_with = "from")]
+    pub(crate) parts: bool,
 }
 
 /// `farsa check`.
