@@ -62,6 +62,8 @@ impl fmt::Display for ParameterFault {
 pub enum LayoutFault {
     /// The slope of the logistic function is NaN or infinite.
     Slope(f32),
+    /// The loss is cross entropy, and an output is not the value of a logistic function.
+    Loss,
     /// The time step [s] is not a finite number above zero.
     TimeStep(f32),
     /// The layout does not have these neurons.
@@ -114,6 +116,7 @@ pub enum LayoutFault {
 impl fmt::Display for LayoutFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::Loss => f.write_str("cross entropy requires outputs that are values of logistic functions"),
             Self::Slope(value) => write!(f, "the slope of the logistic function is {value}: not finite"),
             Self::TimeStep(value) => write!(f, "the time step is {value}: not a finite number above 0"),
             Self::Neurons { first, count, neurons } => {

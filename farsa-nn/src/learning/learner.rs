@@ -8,16 +8,20 @@ use farsa_num::Real;
 use crate::error::Error;
 use crate::fault::{ParameterFault, Slice};
 use crate::leak::Leak;
-use crate::leaky_layout::{LeakyLayout, LeakyParameter};
+use crate::leaky_layout::LeakyLayout;
 use crate::leaky_network::LeakyModel;
-use crate::learning::gradient::{Demonstration, Gradient, Loss};
+use crate::learning::differentiable::{Demonstration, Differentiable, Range};
+use crate::learning::gradient::Gradient;
+use crate::learning::loss::Loss;
 use crate::learning::optimizer::Optimizer;
-use crate::network::Model as _;
+use crate::network::Network;
 
-/// Trains the parameters of a [`LeakyNetwork`](crate::LeakyNetwork) with the [`Gradient`] of the cost of
-/// demonstrations.
+/// Smallest time constant of a learned CTRNN [s].
+const LEAST_TIME_CONSTANT: f64 = 1e-3;
+
+/// Trains the parameters of a network with the [`Gradient`] of the cost of demonstrations.
 ///
-/// After each step, leaks are clamped to [0, 1]. The absolute values of weights and biases are limited by
+/// After each step, leaks are clamped to [0, 1], and time constants to at least a thousandth of a second. The absolute values of weights and biases are limited by
 /// [`limit`](Self::with_limit).
 ///
 /// ```
@@ -39,8 +43,8 @@ use crate::network::Model as _;
 /// # Ok::<(), farsa_nn::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Learner<R, O> {
-    gradient: Gradient<R>,
+pub struct Learner<R, O, M = LeakyModel> {
+    gradient: Gradient<R, M>,
     optimizer: O,
     parameters: Vec<R>,
     memory: Vec<R>,
@@ -71,15 +75,29 @@ impl<R: Real> Mean<R> {
 }
 
 impl<R: Real, O: Optimizer<R>> Learner<R, O> {
-    /// Creates a learner that starts with the given parameters. Their number must be
-    /// [`parameter_count`](LeakyLayout::parameter_count).
+    /// Creates a learner of a [`LeakyNetwork`](crate::LeakyNetwork) that starts with the given parameters. Their number
+    /// must be [`parameter_count`](LeakyLayout::parameter_count).
     ///
     /// # Errors
     /// Returns [`Error::Layout`] if the slope is invalid, [`Error::Length`] or [`Error::Parameter`].
     pub fn new(layout: LeakyLayout, leak: Leak, loss: Loss, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
-        let gradient = Gradient::new(layout, leak, loss)?;
+        Self::with(Gradient::new(layout, leak, loss)?, parameters, optimizer)
+    }
+}
+
+impl<R: Real, O: Optimizer<R>, M: Differentiable> Learner<R, O, M> {
+    /// Creates a learner of a network that starts with the network's parameters.
+    ///
+    /// # Errors
+    /// Returns [`Error::Layout`] if the outputs of the network do not fit the loss.
+    pub fn of<P: AsRef<[f32]>, S>(network: &Network<M, P, S>, loss: Loss, optimizer: O) -> Result<Self, Error> {
+        let parameters = network.parameters.as_ref().iter().map(|p| R::from_f64(f64::from(*p))).collect();
+        Self::with(Gradient::of(network, loss)?, parameters, optimizer)
+    }
+
+    fn with(gradient: Gradient<R, M>, parameters: Vec<R>, optimizer: O) -> Result<Self, Error> {
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
-        LeakyModel { layout, leak }.check_model(&single, |p| p)?;
+        gradient.model().check_model(&single, |p| p)?;
         let memory = vec![R::default(); optimizer.memory_len(parameters.len())];
         Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None, mean: None })
     }
@@ -122,7 +140,7 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
             return Ok(R::default());
         }
         // The mean over ticks and motor values, as of the cost.
-        let values = R::from_f64((ticks * self.gradient.layout().outputs().max(1)) as f64);
+        let values = R::from_f64((ticks * self.gradient.model().outputs().max(1)) as f64);
         let mut squares = R::default();
         for g in self.gradient.sum_mut() {
             *g = *g / values;
@@ -134,12 +152,12 @@ impl<R: Real, O: Optimizer<R>> Learner<R, O> {
             self.gradient.sum_mut().iter_mut().for_each(|g| *g *= factor);
         }
         self.optimizer.step(self.gradient.sum(), &mut self.parameters, &mut self.memory);
-        let leaks = self.gradient.layout().range(LeakyParameter::Leak).start;
         for (index, p) in self.parameters.iter_mut().enumerate() {
-            if index >= leaks {
-                *p = farsa_num::Scalar::clamp(*p, R::default(), R::from_f64(1.0));
-            } else if let Some(limit) = self.limit {
-                *p = farsa_num::Scalar::clamp(*p, -limit, limit);
+            match (self.gradient.model().range(index), self.limit) {
+                (Range::Share, _) => *p = farsa_num::Scalar::clamp(*p, R::default(), R::from_f64(1.0)),
+                (Range::Positive, _) => *p = farsa_num::Scalar::max(*p, R::from_f64(LEAST_TIME_CONSTANT)),
+                (Range::Any, Some(limit)) => *p = farsa_num::Scalar::clamp(*p, -limit, limit),
+                (Range::Any, None) => {}
             }
         }
         if let Some(mean) = &mut self.mean {

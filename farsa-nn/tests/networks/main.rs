@@ -6,6 +6,7 @@ mod ctrnn;
 mod ctrnn_scipy;
 mod evonet;
 mod gradient;
+mod gradients;
 mod leaky_network;
 mod perceptron;
 mod saved;
