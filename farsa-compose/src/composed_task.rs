@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
-use farsa_lab::advanced::{Behavior, Rollout};
+use farsa_lab::advanced::{Behavior, Learner, Rollout};
 use farsa_lab::exports::{
     ControllerExport, Exports, MotorDrive, MotorExport, NetworkExport, SensorExport, SensorReading,
 };
@@ -122,6 +122,9 @@ impl<E: Body> Rollout for ComposedTask<E> {
     }
     fn outcome(&self) -> Outcome {
         self.0.agents().outcome()
+    }
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        self.0.agents_mut().trainee.as_mut().map(|trainee| trainee as _)
     }
 }
 

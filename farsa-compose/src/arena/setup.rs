@@ -22,6 +22,7 @@ use crate::parts::ledger::Ledger;
 use crate::parts::network_spec::{NetworkSpec, Spans};
 use crate::parts::part::Part;
 use crate::parts::sizes::{MemoryBudget, check_parts};
+use crate::parts::trainee::Trainee;
 
 /// A scene with its robots and terms.
 #[derive(Clone, Debug)]
@@ -91,7 +92,8 @@ impl Setup {
             || !scene.blocks.is_empty()
             || terms.iter().any(|term| term.is_about_robot(&scene));
         let starting = Starting::new(&document, &scene, source)?;
-        let agents = Agents::new(document, spec, ledger, scene.groups.clone());
+        let trainee = Trainee::new(&document, &spec, source)?;
+        let agents = Agents { trainee, ..Agents::new(document, spec, ledger, scene.groups.clone()) };
         let registry = source.registry.clone();
         Ok((Self { scene, members, foraging, moving, starting, terms, registry }, agents))
     }

@@ -38,6 +38,8 @@ fn named(document: &Document) -> Vec<(String, &str)> {
     let network = if let NetworkKind::Evonet(evonet) = &document.network.kind { evonet.file.as_deref() } else { None };
     let network = network.map(|name| ("/network/file".to_owned(), name));
     let mut files: Vec<(String, &str)> = scene.into_iter().chain(model).chain(network).collect();
+    let demonstrations = document.learning.iter().flat_map(|learning| learning.demonstrations.iter().enumerate());
+    files.extend(demonstrations.map(|(index, name)| (format!("/learning/demonstrations/{index}"), name.as_str())));
     for (index, sensor) in document.sensors.iter().enumerate() {
         let SensorKind::Infrared { tables: Some(tables), .. } = &sensor.kind else { continue };
         let path = format!("/sensors/{index}/tables");

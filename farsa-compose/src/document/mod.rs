@@ -17,6 +17,8 @@ mod episode;
 mod evonet;
 /// Food and energy.
 mod foraging;
+/// Learning from demonstrations.
+mod learning;
 /// Motors.
 mod motor;
 /// Networks.
@@ -37,6 +39,7 @@ pub use blocks::{Blocks, Cluster, ClusterActivation, Link};
 pub use episode::{Ending, Episode, Placing, Start};
 pub use evonet::{Evonet, EvonetNeurons};
 pub use foraging::Foraging;
+pub use learning::{Learning, LossName};
 pub use motor::{Led, Motor, MotorKind};
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
@@ -114,6 +117,9 @@ pub struct Document {
     /// The settings of the section `evolution`, such as generations and population.
     #[serde(default)]
     pub evolution: BTreeMap<String, serde_json::Value>,
+    /// Learning from demonstrations, for the strategy `learning`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub learning: Option<Learning>,
     /// Genes of strategies with bits.
     #[serde(default)]
     pub genome: Genome,

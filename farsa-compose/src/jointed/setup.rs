@@ -20,6 +20,7 @@ use crate::parts::ledger::Ledger;
 use crate::parts::network_spec::NetworkSpec;
 use crate::parts::part::Part;
 use crate::parts::sizes::{MemoryBudget, check_parts};
+use crate::parts::trainee::Trainee;
 
 /// A scene with its robot and terms.
 #[derive(Clone, Debug)]
@@ -65,7 +66,8 @@ impl Setup {
         let floating = segments.filter(|(_, segment)| segment.joint.kind == JointKind::Floating);
         let floating = floating.map(|(number, _)| BodyId(number as u16)).collect();
         let (joints, collisions) = (scene.robot.joints().collect(), scene.collisions());
-        let agents = Agents::new(document, spec, ledger, groups);
+        let trainee = Trainee::new(&document, &spec, source)?;
+        let agents = Agents { trainee, ..Agents::new(document, spec, ledger, groups) };
         Ok((Self { scene, equipment, starting, terms, collisions, joints, floating }, agents))
     }
 }

@@ -15,6 +15,7 @@ use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
 use crate::parts::tally::Tally;
+use crate::parts::trainee::Trainee;
 
 /// Robots of a document in any world. Copies share the document and the test protocols.
 #[derive(Clone, Debug)]
@@ -34,6 +35,8 @@ pub(crate) struct Agents {
     /// Recorded robot.
     pub(crate) watched: usize,
     pub(crate) networks: Vec<NormalizedController<AnyNetwork>>,
+    /// Learner from demonstrations, if any.
+    pub(crate) trainee: Option<Trainee>,
     /// Last sensor and motor values of all robots.
     pub(crate) x: Vec<f32>,
     pub(crate) y: Vec<f32>,
@@ -48,7 +51,21 @@ impl Agents {
         let interventions = Arc::new(interventions(&document, &spec, robots));
         let document = Arc::new(document);
         let (evolving, present, watched, size) = ([0, robots], robots, 0, 1);
-        Self { document, spec, ledger, groups, interventions, size, evolving, present, watched, networks, x, y }
+        Self {
+            document,
+            spec,
+            ledger,
+            groups,
+            interventions,
+            size,
+            evolving,
+            present,
+            watched,
+            networks,
+            trainee: None,
+            x,
+            y,
+        }
     }
 
     /// Begins a trial. `arranged` is false if something had no place.

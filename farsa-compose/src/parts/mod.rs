@@ -32,6 +32,8 @@ pub(crate) mod hand_wired;
 pub(crate) mod interventions;
 /// Terms of a trial, with success and failure.
 pub(crate) mod ledger;
+/// Demonstrations from CSV files.
+pub(crate) mod lessons;
 /// A network of any kind.
 pub(crate) mod network;
 /// Channels of a robot, and the network between them.
@@ -48,6 +50,8 @@ pub(crate) mod sizes;
 pub(crate) mod static_layout;
 /// Total of a term in a trial.
 pub(crate) mod tally;
+/// A network that learns from demonstrations.
+pub(crate) mod trainee;
 /// Conditions of success and failure.
 pub(crate) mod wanted;
 /// Wrappers of sensors and motors.

@@ -15,6 +15,7 @@ mod genotypes;
 mod guide;
 mod individuals;
 mod keyframes;
+mod learning;
 mod lines;
 mod live;
 mod look;

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::experiment::behavior::Behavior;
 use crate::experiment::disturbance::{Apply, Disturbances, Disturbed, Place, apply, place};
 use crate::experiment::episode::{Episode, EpisodeId, run_episode};
-use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Task, TaskInfo};
+use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Learner, Task, TaskInfo};
 use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
@@ -25,6 +25,11 @@ pub trait Rollout: Task {
 
     /// Builds the outcome of the episode that has ended.
     fn outcome(&self) -> Outcome;
+
+    /// Gives access to the training for the strategy [`Learning`](crate::strategy::Learning), if there is any.
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        None
+    }
 }
 
 /// An episode in each lane of a batch.
@@ -219,6 +224,10 @@ where
             self.rollout.record(&self.world, recorder);
         }
         started
+    }
+
+    fn learner(&mut self) -> Option<&mut dyn Learner> {
+        self.rollout.learner()
     }
 
     fn displaces(&self) -> bool {

@@ -12,7 +12,7 @@ use crate::block::network::BlockModel;
 use crate::error::Error;
 use crate::fault::LayoutFault;
 use crate::leak::Leak;
-use crate::learning::differentiable::{Demonstration, Differentiable, Range};
+use crate::learning::differentiable::{Demonstration, Differentiable, Domain};
 use crate::learning::loss::Loss;
 use crate::learning::sums::{activation_slope, add_products, add_rows, add_transposed};
 
@@ -187,8 +187,8 @@ impl Differentiable for BlockModel<'_> {
         Ok(())
     }
 
-    fn range(&self, index: usize) -> Range {
-        if self.layout.kind(index) == Some(BlockParameter::Leak) { Range::Share } else { Range::Any }
+    fn domain(&self, index: usize) -> Domain {
+        if self.layout.kind(index) == Some(BlockParameter::Leak) { Domain::Share } else { Domain::Any }
     }
 
     /// The trace has for each block of each tick: of a connection its sent values, and the activations and gains of its

@@ -10,7 +10,7 @@ use crate::ctrnn::network::CtrnnModel;
 use crate::ctrnn::{CtrnnParameter, Integrator};
 use crate::error::Error;
 use crate::fault::LayoutFault;
-use crate::learning::differentiable::{Demonstration, Differentiable, Range};
+use crate::learning::differentiable::{Demonstration, Differentiable, Domain};
 use crate::learning::loss::Loss;
 use crate::learning::sums::{activation_slope, add_products, add_rows, add_transposed};
 
@@ -73,9 +73,9 @@ impl Differentiable for CtrnnModel {
         Ok(())
     }
 
-    fn range(&self, index: usize) -> Range {
+    fn domain(&self, index: usize) -> Domain {
         let time_constant = self.layout.kind(index) == Some(CtrnnParameter::TimeConstant);
-        if time_constant { Range::Positive } else { Range::Any }
+        if time_constant { Domain::Positive } else { Domain::Any }
     }
 
     /// The trace has the states, the points and net inputs of all slopes of each tick, and the states after the last.

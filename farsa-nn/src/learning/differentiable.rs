@@ -20,7 +20,7 @@ pub struct Demonstration<'a> {
 
 /// Values that a parameter may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Range {
+pub enum Domain {
     /// Any number, within the limit of a learner.
     Any,
     /// From 0 to 1, for leaks.
@@ -40,8 +40,8 @@ pub trait Differentiable: Model + Clone {
     /// Returns [`Error::Layout`].
     fn check(&self, loss: Loss) -> Result<(), Error>;
 
-    /// Returns the range of a parameter.
-    fn range(&self, index: usize) -> Range;
+    /// Returns the domain of a parameter.
+    fn domain(&self, index: usize) -> Domain;
 
     /// Runs the network over a demonstration of the right size, stores its trace and returns the cost.
     fn run<R: Real>(&self, loss: Loss, parameters: &[R], of: Demonstration<'_>, trace: &mut Vec<R>) -> R;

@@ -10,7 +10,7 @@ use crate::fault::LayoutFault;
 use crate::leak::Leak;
 use crate::leaky_layout::LeakyParameter;
 use crate::leaky_network::LeakyModel;
-use crate::learning::differentiable::{Demonstration, Differentiable, Range};
+use crate::learning::differentiable::{Demonstration, Differentiable, Domain};
 use crate::learning::loss::Loss;
 use crate::learning::sums::{add_products, add_rows, add_transposed};
 
@@ -23,8 +23,8 @@ impl Differentiable for LeakyModel {
         LayoutFault::check_slope(self.layout.slope())
     }
 
-    fn range(&self, index: usize) -> Range {
-        if self.layout.kind(index) == Some(LeakyParameter::Leak) { Range::Share } else { Range::Any }
+    fn domain(&self, index: usize) -> Domain {
+        if self.layout.kind(index) == Some(LeakyParameter::Leak) { Domain::Share } else { Domain::Any }
     }
 
     fn run<R: Real>(

@@ -2,6 +2,7 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use farsa_num::Real;
 
@@ -10,7 +11,7 @@ use crate::fault::{ParameterFault, Slice};
 use crate::leak::Leak;
 use crate::leaky_layout::LeakyLayout;
 use crate::leaky_network::LeakyModel;
-use crate::learning::differentiable::{Demonstration, Differentiable, Range};
+use crate::learning::differentiable::{Demonstration, Differentiable, Domain};
 use crate::learning::gradient::Gradient;
 use crate::learning::loss::Loss;
 use crate::learning::optimizer::Optimizer;
@@ -49,6 +50,8 @@ pub struct Learner<R, O, M = LeakyModel> {
     parameters: Vec<R>,
     memory: Vec<R>,
     limit: Option<R>,
+    /// Parameters that never change.
+    frozen: Range<usize>,
     /// Largest norm of a gradient.
     longest: Option<R>,
     mean: Option<Mean<R>>,
@@ -99,12 +102,17 @@ impl<R: Real, O: Optimizer<R>, M: Differentiable> Learner<R, O, M> {
         let single: Vec<f32> = parameters.iter().map(|p| p.to_f64() as f32).collect();
         gradient.model().check_model(&single, |p| p)?;
         let memory = vec![R::default(); optimizer.memory_len(parameters.len())];
-        Ok(Self { gradient, optimizer, parameters, memory, limit: None, longest: None, mean: None })
+        Ok(Self { gradient, optimizer, parameters, memory, limit: None, frozen: 0..0, longest: None, mean: None })
     }
 
     /// Limits the absolute value of all weights and biases.
     pub fn with_limit(self, limit: R) -> Self {
         Self { limit: Some(limit), ..self }
+    }
+
+    /// Keeps consecutive parameters at their first values, such as the gains of a CTRNN.
+    pub fn with_frozen(self, parameters: Range<usize>) -> Self {
+        Self { frozen: parameters, ..self }
     }
 
     /// Limits the norm of the gradient. Longer gradients are scaled to this norm. This is useful for recurrent
@@ -139,6 +147,9 @@ impl<R: Real, O: Optimizer<R>, M: Differentiable> Learner<R, O, M> {
         if ticks == 0 {
             return Ok(R::default());
         }
+        for frozen in self.gradient.sum_mut().get_mut(self.frozen.clone()).into_iter().flatten() {
+            *frozen = R::default();
+        }
         // The mean over ticks and motor values, as of the cost.
         let values = R::from_f64((ticks * self.gradient.model().outputs().max(1)) as f64);
         let mut squares = R::default();
@@ -153,11 +164,11 @@ impl<R: Real, O: Optimizer<R>, M: Differentiable> Learner<R, O, M> {
         }
         self.optimizer.step(self.gradient.sum(), &mut self.parameters, &mut self.memory);
         for (index, p) in self.parameters.iter_mut().enumerate() {
-            match (self.gradient.model().range(index), self.limit) {
-                (Range::Share, _) => *p = farsa_num::Scalar::clamp(*p, R::default(), R::from_f64(1.0)),
-                (Range::Positive, _) => *p = farsa_num::Scalar::max(*p, R::from_f64(LEAST_TIME_CONSTANT)),
-                (Range::Any, Some(limit)) => *p = farsa_num::Scalar::clamp(*p, -limit, limit),
-                (Range::Any, None) => {}
+            match (self.gradient.model().domain(index), self.limit) {
+                (Domain::Share, _) => *p = farsa_num::Scalar::clamp(*p, R::default(), R::from_f64(1.0)),
+                (Domain::Positive, _) => *p = farsa_num::Scalar::max(*p, R::from_f64(LEAST_TIME_CONSTANT)),
+                (Domain::Any, Some(limit)) => *p = farsa_num::Scalar::clamp(*p, -limit, limit),
+                (Domain::Any, None) => {}
             }
         }
         if let Some(mean) = &mut self.mean {

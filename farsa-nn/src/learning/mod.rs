@@ -31,7 +31,7 @@ mod perceptron;
 mod sums;
 
 #[cfg(feature = "alloc")]
-pub use differentiable::{Demonstration, Differentiable, Range};
+pub use differentiable::{Demonstration, Differentiable, Domain};
 #[cfg(feature = "alloc")]
 pub use gradient::Gradient;
 #[cfg(feature = "alloc")]

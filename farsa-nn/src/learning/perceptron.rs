@@ -6,7 +6,7 @@ use farsa_num::{Real, logistic};
 
 use crate::error::Error;
 use crate::fault::LayoutFault;
-use crate::learning::differentiable::{Demonstration, Differentiable, Range};
+use crate::learning::differentiable::{Demonstration, Differentiable, Domain};
 use crate::learning::loss::Loss;
 use crate::learning::sums::{add_products, add_rows};
 use crate::perceptron::{Perceptron, PerceptronModel};
@@ -20,8 +20,8 @@ impl Differentiable for PerceptronModel {
         LayoutFault::check_slope(self.slope)
     }
 
-    fn range(&self, _: usize) -> Range {
-        Range::Any
+    fn domain(&self, _: usize) -> Domain {
+        Domain::Any
     }
 
     /// The trace has the motor values of each tick.

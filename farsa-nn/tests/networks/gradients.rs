@@ -50,7 +50,8 @@ where
             let mut expected = 0.0;
             for (x, wanted) in x.chunks(inputs).zip(wanted.chunks(outputs)) {
                 network.step(x, &mut y);
-                expected += y.iter().zip(wanted).map(|(y, wanted)| f64::from(y - wanted) * f64::from(y - wanted)).sum::<f64>();
+                expected +=
+                    y.iter().zip(wanted).map(|(y, wanted)| f64::from(y - wanted) * f64::from(y - wanted)).sum::<f64>();
             }
             assert!((cost - expected).abs() < 1e-4 * (1.0 + expected), "{cost} is not {expected}");
         }
@@ -176,8 +177,9 @@ fn recurrent_networks_learn_to_remember() {
     };
     let parameters: Vec<f32> = layout.kinds().map(parameter).collect();
     let network = Ctrnn::new(layout, 0.1, parameters, vec![0.0; layout.state_len()]).expect("a network");
-    let mut learner: Learner<f64, _, _> =
-        Learner::of(&network, Loss::CrossEntropy, Adam::new(0.05)).expect("a learner");
+    let gains = layout.range(CtrnnParameter::Gain);
+    let learner: Learner<f64, _, _> = Learner::of(&network, Loss::CrossEntropy, Adam::new(0.05)).expect("a learner");
+    let mut learner = learner.with_frozen(gains.clone());
     let first = learner.cost(all()).expect("a cost");
     for _ in 0..500 {
         learner.learn(all()).expect("a step");
@@ -186,6 +188,7 @@ fn recurrent_networks_learn_to_remember() {
     assert!(first > 0.5 && last < 0.1, "{first} {last}");
     let constants = layout.range(CtrnnParameter::TimeConstant);
     assert!(learner.parameters()[constants].iter().all(|tau| *tau >= 1e-3));
+    assert!(learner.parameters()[gains].iter().all(|gain| *gain == 1.0));
     let plan = Architecture::elman(1, 4, 1).plan();
     let layout = plan.layout();
     let parameters = draws(&mut stream, layout.parameter_count(), -1.0, 1.0);
