@@ -14,7 +14,7 @@ mod name;
 pub mod part;
 mod parts;
 
-pub use check::schema::schema;
+pub use check::registry::schema;
 pub use experiment::ComposedExperiment;
 pub use files::FILES;
 pub use limits::Limits;

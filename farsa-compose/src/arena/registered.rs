@@ -5,13 +5,13 @@ use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_lab::Error;
 
 use crate::arena::ArenaWorld;
-use crate::arena::scene::Scene;
+use crate::arena::scene::{Scene, Thing};
 use crate::check::completed::builder;
 use crate::check::source::Source;
 use crate::part::PartScene;
 use crate::part::definition::{Build, Given};
 use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
-use crate::part::scene::Surroundings;
+use crate::part::scene::{Area, Surroundings};
 
 /// A registered sensor.
 #[derive(Clone, Debug)]
@@ -75,6 +75,17 @@ impl Surroundings for PartOfPlanar<'_> {
 
     fn thing(&self, name: &str) -> Result<BodyId, Error> {
         self.scene.body(name, self.path, self.source)
+    }
+
+    fn area(&self, name: &str) -> Result<Area, Error> {
+        match self.scene.thing(name, self.path, self.source)? {
+            Thing::Area { body, half, disc } => Ok(Area { body, half, disc }),
+            _ => Err(self.error(format!("`{name}` is no disc or rectangle"))),
+        }
+    }
+
+    fn robots(&self) -> Vec<BodyId> {
+        (0..self.scene.robots.len()).map(|robot| self.scene.parts(robot).body).collect()
     }
 
     fn joints(&self, names: &[String]) -> Result<Vec<JointId>, Error> {

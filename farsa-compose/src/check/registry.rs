@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use crate::check::schema::{SCHEMA, scene_schema};
 use crate::name::is_name;
 use crate::part::definition::{Build, Definition};
+use crate::part::registration::built_in;
 
 /// Parts that a file may name in addition to those of the format.
 #[derive(Clone, Debug)]
@@ -22,14 +23,19 @@ pub(crate) struct Registry {
 
 /// Registry without parts, whose schemas are built once because each takes a megabyte.
 static PLAIN: LazyLock<Registry> = LazyLock::new(|| {
-    let schemas = [SCHEMA.clone(), scene_schema(&SCHEMA)];
-    Registry { definitions: Vec::new(), schemas: Arc::new(schemas) }
+    // A test builds the same registry, so an error cannot occur later.
+    Registry::of(&SCHEMA, &built_in()).unwrap_or_else(|_| Registry { definitions: Vec::new(), schemas: Arc::default() })
 });
 
 impl Default for Registry {
     fn default() -> Self {
         PLAIN.clone()
     }
+}
+
+/// Creates the JSON schema of the format. You can use it to check files in an editor, for example.
+pub fn schema() -> Value {
+    Registry::default().schemas[0].clone()
 }
 
 /// Name in the schema of the kinds of a definition, the key that selects one, and the name in messages.
@@ -52,12 +58,20 @@ impl Registry {
     /// # Errors
     /// [`Error::Usage`] for a name that is invalid or taken, and for keys that a file cannot have.
     pub(crate) fn new(parts: &[Part]) -> Result<Self, Error> {
+        let plain = Self::default();
+        if !parts.iter().any(|part| part.definition::<Definition>().is_some()) {
+            return Ok(plain);
+        }
+        let own = Self::of(&plain.schemas[0], parts)?;
+        let definitions = plain.definitions.into_iter().chain(own.definitions).collect();
+        Ok(Self { definitions, ..own })
+    }
+
+    /// Adds parts to a schema.
+    fn of(schema: &Value, parts: &[Part]) -> Result<Self, Error> {
         let definitions = parts.iter().filter_map(Part::definition::<Definition>).cloned();
         let definitions: Vec<Definition> = definitions.collect();
-        if definitions.is_empty() {
-            return Ok(Self::default());
-        }
-        let mut schema = SCHEMA.clone();
+        let mut schema = schema.clone();
         for definition in &definitions {
             let (kinds, tag, what) = place(&definition.build);
             let wrong = |why: &str| Error::Usage(format!("the {what} `{}` of this program {why}", definition.name));

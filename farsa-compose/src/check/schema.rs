@@ -6,16 +6,16 @@ use serde_json::{Map, Value};
 
 use crate::document::Document;
 
-/// Creates the JSON schema of the format. You can use it to check files in an editor, for example.
-pub fn schema() -> Value {
+/// Creates the schema of documents, without registered parts.
+fn of_documents() -> Value {
     let settings = schemars::generate::SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Document>().to_value();
     close(&mut schema);
     schema
 }
 
-/// Schema, built once because it takes a megabyte.
-pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
+/// Schema of documents, built once because it takes a megabyte.
+pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(of_documents);
 
 /// Returns the schema of a file with objects only.
 pub(crate) fn scene_schema(schema: &Value) -> Value {

@@ -12,7 +12,7 @@ use crate::jointed::scene::Scene;
 use crate::part::PartScene;
 use crate::part::definition::{Build, Given};
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
-use crate::part::scene::Surroundings;
+use crate::part::scene::{Area, Surroundings};
 
 /// A registered sensor.
 #[derive(Clone, Debug)]
@@ -78,6 +78,14 @@ impl Surroundings for PartOfSpatial<'_> {
             NamedPoint::Body(point) => Ok(point.body),
             NamedPoint::Marker(_) => Err(self.error(format!("`{name}` is a marker, which has no body"))),
         }
+    }
+
+    fn area(&self, name: &str) -> Result<Area, Error> {
+        Err(self.error(format!("`{name}` is an area, and areas are for robots on wheels")))
+    }
+
+    fn robots(&self) -> Vec<BodyId> {
+        vec![BodyId(0)]
     }
 
     fn joints(&self, names: &[String]) -> Result<Vec<JointId>, Error> {

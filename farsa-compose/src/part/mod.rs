@@ -47,6 +47,8 @@
 
 /// Definitions of parts by name and kind.
 pub(crate) mod definition;
+/// Exchanges of two areas.
+mod exchanges;
 /// Settings of a part.
 mod keys;
 /// Motors.
@@ -56,7 +58,7 @@ pub(crate) mod network;
 /// Parts of unknown types, in all worlds.
 pub(crate) mod object;
 /// Registration under names.
-mod registration;
+pub(crate) mod registration;
 /// Scene in which a part is built.
 pub(crate) mod scene;
 /// Sensors.
@@ -80,7 +82,7 @@ pub use registration::{
     motor, network, planar_motor, planar_sensor, planar_start, planar_term, robot_on_wheels, robot_with_joints, sensor,
     spatial_motor, spatial_sensor, spatial_start, spatial_term, start, term, thing, wrapper,
 };
-pub use scene::PartScene;
+pub use scene::{Area, PartScene};
 pub use sensor::{Quantity, SensorPart};
 pub use start::{Start, StartPart};
 pub use term::{Term, TermPart};

@@ -7,6 +7,7 @@ use farsa_lab::advanced::Part;
 
 use crate::document::Object;
 use crate::part::definition::{Build, Definition, Given, keys};
+use crate::part::exchanges::Exchanges;
 use crate::part::motor::MotorPart;
 use crate::part::network::{Built, NetworkPart, built};
 use crate::part::object::{
@@ -154,4 +155,9 @@ pub fn robot_on_wheels(name: &'static str, robot: MobileRobot) -> Part {
 /// Registers a robot with joints under a name, for the key `kind` of `robot`.
 pub fn robot_with_joints(name: &'static str, robot: Robot) -> Part {
     Definition::robot(name, Build::Joints(Box::new(robot)))
+}
+
+/// Lists the parts of the format that are registered like those of other crates.
+pub(crate) fn built_in() -> Vec<Part> {
+    vec![planar_term::<Exchanges>("exchanges")]
 }

@@ -2,7 +2,8 @@
 
 use std::fmt::Display;
 
-use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
+use farsa_body::Pose;
+use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, Kinematics, PairId};
 use farsa_body::robots::MobileRobot;
 use farsa_lab::Error;
 
@@ -14,6 +15,10 @@ pub(crate) trait Surroundings {
     fn body(&self, name: Option<&str>) -> Result<BodyId, Error>;
     /// Returns the body of a thing.
     fn thing(&self, name: &str) -> Result<BodyId, Error>;
+    /// Returns a named area.
+    fn area(&self, name: &str) -> Result<Area, Error>;
+    /// Lists the bodies of all robots on wheels, or the first body of the robot with joints.
+    fn robots(&self) -> Vec<BodyId>;
     /// Returns joints of the robot.
     fn joints(&self, names: &[String]) -> Result<Vec<JointId>, Error>;
     /// Returns the actuators of joints.
@@ -22,6 +27,28 @@ pub(crate) trait Surroundings {
     fn contacts(&self, bodies: &[String], with: Option<&str>) -> Result<Vec<PairId>, Error>;
     /// Gets the robot on wheels, if any.
     fn mobile_robot(&self) -> Option<&MobileRobot>;
+}
+
+/// A disc or rectangle of the ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Area {
+    /// Body of the area.
+    pub body: BodyId,
+    /// Half the sides of a rectangle, or the radius of a disc twice \[m\].
+    pub half: [f64; 2],
+    /// True for a disc.
+    pub disc: bool,
+}
+
+impl Area {
+    /// Checks if the origin of a pose is in the area.
+    pub fn contains<W: Kinematics + Handles<Body = BodyId>>(&self, world: &W, pose: Pose) -> bool {
+        let [x, y, _] = world.pose(self.body).transform_back(pose.position).map(f64::from);
+        if self.disc {
+            return x * x + y * y <= self.half[0] * self.half[0];
+        }
+        x.abs() <= self.half[0] && y.abs() <= self.half[1]
+    }
 }
 
 /// Scene of an experiment, for the names in a part's settings.
@@ -54,6 +81,19 @@ impl<'s> PartScene<'s> {
     /// Returns [`Error::Setting`] for an unknown thing, a wall or a marker.
     pub fn thing(&self, name: &str) -> Result<BodyId, Error> {
         self.0.thing(name)
+    }
+
+    /// Returns a disc or rectangle of the ground.
+    ///
+    /// # Errors
+    /// Returns [`Error::Setting`] for an unknown name, for another thing, and for a robot with joints.
+    pub fn area(&self, name: &str) -> Result<Area, Error> {
+        self.0.area(name)
+    }
+
+    /// Lists the bodies of all robots on wheels, or the first body of the robot with joints.
+    pub fn robots(&self) -> Vec<BodyId> {
+        self.0.robots()
     }
 
     /// Returns joints of the robot by name, by default all. Robots on wheels have the joints of their wheels.

@@ -19,8 +19,18 @@ fn kinds(definition: &str) -> Vec<String> {
 /// Kinds with values in `tests/jointed/eyes.rs`, by rays through the middles of pixels.
 const SEEN: [&str; 4] = ["camera", "camera-image", "color-blobs", "visual-offset"];
 /// Terms of food and groups in `teams.rs`.
-const OF_TEAMS: [&str; 9] =
-    ["food", "carried-food", "lost-food", "deaths", "energy", "alive", "held", "time-left", "fullest-area"];
+const OF_TEAMS: [&str; 10] = [
+    "food",
+    "carried-food",
+    "lost-food",
+    "deaths",
+    "energy",
+    "alive",
+    "held",
+    "time-left",
+    "fullest-area",
+    "exchanges",
+];
 
 const ALL: &str = "eye = { columns = 1, rows = 1, field_of_view = 60, range = 1 }\n";
 
@@ -37,7 +47,7 @@ const NOT_ON_WHEELS: [(&str, &str, &str); 10] = [
     ("motors", "servo", ""),
     ("motors", "muscles", ""),
 ];
-const NOT_OF_JOINTS: [(&str, &str, &str); 36] = [
+const NOT_OF_JOINTS: [(&str, &str, &str); 37] = [
     ("reward", "angle", "object = \"lamp\"\n"),
     ("reward", "wheel-speed", ""),
     ("reward", "wheel-difference", ""),
@@ -48,6 +58,7 @@ const NOT_OF_JOINTS: [(&str, &str, &str); 36] = [
     ("reward", "clusters", ""),
     ("reward", "largest-cluster", ""),
     ("reward", "near-others", ""),
+    ("reward", "exchanges", "area = \"lamp\"\nwith = \"lamp\"\n"),
     ("reward", "food", ""),
     ("reward", "carried-food", ""),
     ("reward", "lost-food", ""),

@@ -274,3 +274,55 @@ fn terms_name_robots_that_there_are() {
     let found = refused(&alone);
     assert!(found.contains("unknown object `robot-2`") && !found.contains("robot-1"), "{found}");
 }
+
+/// Two robots on given circles, each in an area or not, and the exchanges that are counted.
+#[test]
+fn exchanges_count_each_time_that_both_are_the_other_way_round() {
+    // Both robots turn about the middle between the areas, half a turn apart, so that each half turn is an exchange.
+    let text = |size: f64, start: f64| {
+        format!(
+            r#"
+world = {{ size = [2.0, 2.0], time_step = 0.1 }}
+robot = {{ kind = "e-puck", count = 2 }}
+objects = [
+    {{ name = "left", kind = "disc", radius = {size}, color = [0.0, 0.0, 0.0], at = [0.8, 1.0] }},
+    {{ name = "right", kind = "rectangle", size = [{side}, {side}], color = [0.0, 0.0, 0.0], at = [1.2, 1.0] }},
+]
+sensors = [{{ kind = "constant", value = 0.0 }}]
+motors = [{{ kind = "wheels" }}]
+network = {{ kind = "wired", bias = [0.6915, 0.75], wires = [] }}
+episode = {{ steps = 600, trials = 1 }}
+start = [
+    {{ place = "robot-1", at = "fixed", point = [{start}, 1.0], heading = -90.0 }},
+    {{ place = "robot-2", at = "fixed", point = [{other}, 1.0], heading = 90.0 }},
+]
+[[reward]]
+kind = "exchanges"
+area = "left"
+with = "right"
+over = "end"
+"#,
+            side = 2.0 * size,
+            other = 2.0 - start,
+        )
+    };
+    let trial = Trial::new(&text(0.15, 0.8));
+    let counts = trial.column("exchanges");
+    // Turns from the positions of the recorded robot: it is in the left area, then in the right one, and so on.
+    let xs = trial.column("x [m]");
+    let (mut expected, mut last) = (0.0, xs[0] < 1.0);
+    for (x, count) in xs.iter().zip(&counts) {
+        let inside = if *x < 1.0 { (x - 0.8).abs() } else { (x - 1.2).abs() };
+        if inside < 0.1 && last != (*x < 1.0) {
+            (expected, last) = (expected + 1.0, *x < 1.0);
+        }
+        assert!((count - expected).abs() <= 1.0, "{count} is not {expected}");
+    }
+    assert!(expected >= 2.0 && counts.last() == Some(&expected), "{expected} {:?}", counts.last());
+    // Nothing is counted in areas that are too small to be met.
+    assert_eq!(Trial::new(&text(0.001, 0.785)).outcome.terms[0], 0.0);
+    let error = refused(&text(0.15, 0.8).replace("count = 2", "count = 1").replace("    { place = \"robot-2\"", "#"));
+    assert!(error.contains("is for two robots on wheels"), "{error}");
+    let error = refused(&text(0.15, 0.8).replace("with = \"right\"", "with = \"rihgt\""));
+    assert!(error.contains("unknown object `rihgt`; the nearest is `right`"), "{error}");
+}
