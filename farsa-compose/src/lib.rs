@@ -8,6 +8,7 @@ mod composed_task;
 pub mod document;
 mod experiment;
 mod files;
+mod formula;
 mod jointed;
 mod limits;
 mod name;

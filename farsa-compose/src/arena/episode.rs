@@ -147,15 +147,33 @@ impl ArenaEpisode {
     }
 
     /// Returns a term of one robot.
-    #[inline(never)]
+    #[inline]
     fn value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
-        let Self { setup, agents, started, before, poses, numbers, .. } = self;
+        if term.is_formula() { self.formula_value(world, term, robot) } else { self.measure_value(world, term, robot) }
+    }
+
+    /// Returns a measure of one robot.
+    #[inline(never)]
+    fn measure_value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
+        term.value(world, &self.setup.members[robot].parts, (&self.rows(), robot), &self.numbers[robot])
+    }
+
+    /// Returns a formula of one robot. Separate, because its stack would slow down other terms.
+    #[inline(never)]
+    fn formula_value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
+        let of = |robot: usize| (&self.setup.members[robot].parts, &self.numbers[robot]);
+        term.formula_value(world, (&self.rows(), robot), of)
+    }
+
+    /// Returns the values that measures read.
+    #[inline(always)]
+    fn rows(&self) -> Rows<'_> {
+        let Self { setup, agents, started, before, poses, .. } = self;
         let (inputs, outputs) = (agents.spec.inputs.len(), agents.spec.outputs.len());
         let field = setup.foraging.as_ref().map(|(_, field)| field);
         let steps = [agents.ledger.steps, agents.document.episode.steps];
         let poses = &poses[..agents.present];
-        let rows = Rows { x: &agents.x, y: &agents.y, inputs, outputs, started, before, poses, field, steps };
-        term.value(world, &setup.members[robot].parts, (&rows, robot), &numbers[robot])
+        Rows { x: &agents.x, y: &agents.y, inputs, outputs, started, before, poses, field, steps }
     }
 
     /// Computes the current value of a late term.
@@ -321,6 +339,7 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
         }
         // Food changes before the terms are measured, so a delivery counts in the same step.
         self.measure(world, false);
+        self.agents.ledger.count_conditions();
         (self.agents.ledger.is_over() || self.has_event(world)).then(|| self.conclude(world))
     }
 
@@ -354,7 +373,7 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
             scalars.extend(field.scalars());
             field.record(0, recorder);
         }
-        let tallies = ledger.tallies.iter().enumerate();
+        let tallies = ledger.shown().iter().enumerate();
         scalars.extend(tallies.map(
             |(number, tally)| {
                 if tally.late { self.late_value(world, number) } else { tally.last }

@@ -8,6 +8,7 @@ use crate::arena::registered::{self, PartOfPlanar};
 use crate::arena::scene::{Scene, Thing};
 use crate::check::source::Source;
 use crate::document::RewardKind;
+use crate::formula::channels::Channels;
 use crate::part::object::PlanarTerm;
 
 /// The measure of a term for one robot.
@@ -69,6 +70,11 @@ pub(crate) enum Measure {
     },
     /// For each robot.
     Registered(Vec<Box<dyn PlanarTerm>>),
+    Step,
+    RobotsInArea(Vec<MeasuredArea>),
+    Channels(Channels),
+    /// Value of the term's formula.
+    Formula,
 }
 
 /// An area.
@@ -91,41 +97,36 @@ impl Measure {
         source: &Source,
     ) -> Result<(Self, Option<BodyId>), Error> {
         check(kind, path, source)?;
-        let body = |name: &str| scene.body(name, &format!("{path}/object"), source);
-        let cylinder = |name: &str| {
+        let thing = |object: &String, measure: Self| {
+            Ok((measure, Some(scene.body(object, &format!("{path}/object"), source)?)))
+        };
+        let cylinder = |object: &String, measure: fn(f64, f64) -> Self, within: f64| {
             let path = format!("{path}/object");
-            let solid = scene.thing(name, &path, source)?.solid();
-            solid.ok_or_else(|| source.wrong(&path, format!("`{name}` is no cylinder")))
+            let thing = scene.thing(object, &path, source)?;
+            let hint = if thing == Thing::Wall { "; the term `touch` counts walls" } else { "" };
+            let lacks = || source.wrong(&path, format!("`{object}` is no cylinder{hint}"));
+            let (body, radius) = thing.solid().ok_or_else(lacks)?;
+            Ok((measure(radius, within), Some(body)))
         };
         if let RewardKind::Registered { kind, keys } = kind {
             let term = |robot| registered::term(kind, keys, PartOfPlanar { scene, robot, path, source });
             let terms = (0..scene.robots.len()).map(term).collect::<Result<_, _>>()?;
             return Ok((Self::Registered(terms), None));
         }
-        let mut about = None;
-        let mut of = |thing, measure| {
-            about = Some(thing);
-            measure
-        };
         let measure = match kind {
             RewardKind::Near { object, within, .. } => {
-                let (thing, radius) = cylinder(object)?;
-                of(thing, Measure::Near { radius, within: *within })
+                return cylinder(object, |radius, within| Measure::Near { radius, within }, *within);
             }
-            RewardKind::Gap { object } => {
-                let (thing, radius) = cylinder(object)?;
-                of(thing, Measure::Gap { radius })
-            }
+            RewardKind::Gap { object } => return cylinder(object, |radius, _| Measure::Gap { radius }, 0.0),
             RewardKind::Contact { object, within } => {
-                let (thing, radius) = cylinder(object)?;
-                of(thing, Measure::Contact { radius, within: *within })
+                return cylinder(object, |radius, within| Measure::Contact { radius, within }, *within);
             }
-            RewardKind::Distance { object, .. } => of(body(object)?, Measure::Distance),
-            RewardKind::Approach { object, .. } => of(body(object)?, Measure::Approach),
-            RewardKind::Angle { object } => of(body(object)?, Measure::Angle),
+            RewardKind::Distance { object, .. } => return thing(object, Measure::Distance),
+            RewardKind::Approach { object, .. } => return thing(object, Measure::Approach),
+            RewardKind::Angle { object } => return thing(object, Measure::Angle),
+            RewardKind::Moved { object } => return thing(object, Measure::Moved),
             RewardKind::Touch { .. } => Measure::Touch,
             RewardKind::Displacement { .. } => Measure::Displacement,
-            RewardKind::Moved { object } => of(body(object)?, Measure::Moved),
             RewardKind::Speed { .. } => Measure::Speed,
             RewardKind::Forward { .. } => Measure::Forward,
             RewardKind::Progress { along, .. } => Measure::Progress(direction(along, path, source)?),
@@ -133,6 +134,8 @@ impl Measure {
             RewardKind::Height { .. }
             | RewardKind::Upright { .. }
             | RewardKind::JointSpeed { .. }
+            | RewardKind::JointPosition { .. }
+            | RewardKind::JointVelocity { .. }
             | RewardKind::Registered { .. } => {
                 return Err(source.wrong(path, "is for robots with joints; this one is on wheels"));
             }
@@ -154,6 +157,9 @@ impl Measure {
             RewardKind::FullestArea { area } => {
                 Measure::FullestArea(areas(area, &format!("{path}/area"), scene, source)?)
             }
+            RewardKind::RobotsInArea { area } => {
+                Measure::RobotsInArea(areas(area, &format!("{path}/area"), scene, source)?)
+            }
             RewardKind::Dispersion {} => Measure::Dispersion,
             RewardKind::Clusters {} => Measure::Clusters,
             RewardKind::LargestCluster {} => Measure::LargestCluster,
@@ -171,12 +177,15 @@ impl Measure {
             RewardKind::Effort {} => Measure::Effort,
             RewardKind::Control {} => Measure::Control,
             RewardKind::Steps {} => Measure::Steps,
+            RewardKind::Step {} => Measure::Step,
+            // The term holds the formula.
+            RewardKind::Formula { .. } => Measure::Formula,
             RewardKind::Time {} => Measure::Time,
             RewardKind::TimeLeft { rest } => {
                 Measure::TimeLeft { rest: scene.groups.find(rest, &format!("{path}/rest"), source)? }
             }
         };
-        Ok((measure, about))
+        Ok((measure, None))
     }
 }
 

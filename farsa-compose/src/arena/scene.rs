@@ -215,6 +215,14 @@ impl Scene {
         Err(Error::unknown(&source.of(path), "object", name, names))
     }
 
+    /// Returns the robots of a group or a single one such as `robot-2`, from the first up to the one after the last.
+    pub(crate) fn robots_named(&self, name: &str, path: &str, source: &Source) -> Result<[usize; 2], Error> {
+        let robots = self.robots.len();
+        let number = name.strip_prefix("robot-").and_then(|number| number.parse::<usize>().ok());
+        let single = number.filter(|number| (1..=robots).contains(number)).map(|number| [number - 1, number]);
+        single.map_or_else(|| self.groups.find(name, path, source), Ok)
+    }
+
     /// Returns the body of a named thing.
     pub(crate) fn body(&self, name: &str, path: &str, source: &Source) -> Result<BodyId, Error> {
         let body = self.thing(name, path, source)?.body();

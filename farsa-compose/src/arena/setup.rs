@@ -14,8 +14,10 @@ use crate::arena::starting::Starting;
 use crate::arena::term::Term;
 use crate::check::registry::Registry;
 use crate::check::source::Source;
-use crate::document::{Document, Ending, MotorKind, SensorKind, TestProtocol};
+use crate::document::{Document, Ending, MotorKind, Reward, SensorKind, TestProtocol};
+use crate::formula::compile::Quantity;
 use crate::parts::agents::Agents;
+use crate::parts::conditions::FormulaConditions;
 use crate::parts::equipment::Equipment;
 use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
@@ -82,11 +84,21 @@ impl Setup {
         alike(&members, &scene, &document, source)?;
         let spec = NetworkSpec::new(&document, members[0].equipment.channels(), source)?;
         budget.take(spec.values().saturating_mul(members.len()), "/network", source)?;
-        let term = |(number, reward)| Term::new(reward, number, &spec.sensors, &scene, source);
-        let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
+        let channels = spec.channel_names();
+        let term = |(number, reward): (usize, &Reward)| {
+            Term::new(&reward.kind, &format!("/reward/{number}"), channels, &scene, source)
+        };
+        let mut terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
+        let mut make =
+            |quantity: &Quantity, path: &str| Ok((Term::from_quantity(quantity, path, channels, &scene, source)?, 0));
+        let conditions = FormulaConditions::new(&document, channels, &mut terms, &mut make, source)?;
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
-        let ledger = Ledger::new(&document, &of_steps, &scene.groups, source)?;
-        let foraging = foraging(&document, &scene, &terms, source)?;
+        let of_foraging = terms.iter().position(Term::of_foraging).map(|number| conditions.path_of(number));
+        let ledger = {
+            let abouts: Vec<_> = terms[document.reward.len()..].iter().map(Term::about).collect();
+            Ledger::new(&document, &of_steps, (conditions, &abouts), &scene.groups, source)?
+        };
+        let foraging = foraging(&document, &scene, of_foraging, source)?;
         // Positions of things are constant in a trial unless robots carry or push them, or a robot is the thing.
         let moving = document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {})
             || !scene.blocks.is_empty()
@@ -115,18 +127,17 @@ fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source
     Ok(())
 }
 
-/// Builds the nest and the field of a document.
+/// Builds the nest and the field of a document. `term` is the path of a term that needs them.
 fn foraging(
     document: &Document,
     scene: &Scene,
-    terms: &[Term],
+    term: Option<String>,
     source: &Source,
 ) -> Result<Option<(BodyId, Field)>, Error> {
     let Some(foraging) = &document.foraging else {
         let felt = |kind: &SensorKind| matches!(kind, SensorKind::Energy {} | SensorKind::Carried {});
         let sensor =
             document.sensors.iter().position(|sensor| felt(&sensor.kind)).map(|index| format!("/sensors/{index}"));
-        let term = terms.iter().position(Term::of_foraging).map(|index| format!("/reward/{index}"));
         let ending = document.episode.ends.contains(&Ending::Death).then(|| "/episode/ends".into());
         return match sensor.or(term).or(ending) {
             Some(path) => Err(source.wrong(&path, "needs the section `foraging`, which there is not")),

@@ -12,7 +12,9 @@ use crate::arena::gathering::{Gathering, distance};
 use crate::arena::measure::{Measure, MeasuredArea};
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
-use crate::document::Reward;
+use crate::document::RewardKind;
+use crate::formula::channels::ChannelNames;
+use crate::formula::compile::{Formula, Quantity, Scope};
 
 /// A measure, and the place of its thing.
 #[derive(Clone, Debug)]
@@ -23,6 +25,9 @@ pub(crate) struct Term {
     place: Pose,
     /// Pose of the thing at the start.
     began: Pose,
+    formula: Option<Box<Formula<Self>>>,
+    /// Robots of the mean in a formula, from the first up to the one after the last, by default the measured one.
+    about: Option<[usize; 2]>,
 }
 
 /// Sensor and motor values of all robots, robot by robot, with poses at the start, in the previous step and now [m].
@@ -55,42 +60,90 @@ pub(crate) struct Numbers {
 }
 
 impl Term {
-    /// Reads the term at a path of the document. `sensors` are the channels of a robot.
+    /// Reads the term at a path of the document. `channels` are those of a robot.
     pub(crate) fn new(
-        reward: &Reward,
-        number: usize,
-        sensors: &[(String, [usize; 2])],
+        kind: &RewardKind,
+        path: &str,
+        channels: ChannelNames<'_>,
         scene: &Scene,
         source: &Source,
     ) -> Result<Self, Error> {
-        let (measure, thing) = Measure::new(&reward.kind, &format!("/reward/{number}"), sensors, scene, source)?;
+        if let RewardKind::Formula { formula } = kind {
+            let path = format!("{path}/formula");
+            let mut make = |quantity: &Quantity, path: &str| {
+                Ok((Self::from_quantity(quantity, path, channels, scene, source)?, 0))
+            };
+            let mut formula = Scope { path: &path, channels, source }.term(formula, &mut make)?;
+            if formula.program.is_one_quantity()
+                && let Some(term) = formula.terms.pop_if(|term| term.about.is_none())
+            {
+                return Ok(term);
+            }
+            return Ok(Self { formula: Some(Box::new(formula)), ..Self::of(Measure::Formula, None) });
+        }
+        let (measure, thing) = Measure::new(kind, path, channels.sensors, scene, source)?;
+        Ok(Self::of(measure, thing))
+    }
+
+    /// Reads the term of a formula's quantity.
+    pub(crate) fn from_quantity(
+        quantity: &Quantity,
+        path: &str,
+        channels: ChannelNames<'_>,
+        scene: &Scene,
+        source: &Source,
+    ) -> Result<Self, Error> {
+        match quantity {
+            Quantity::Measure(kind, subject) => {
+                let (mut kind, mut subject) = (kind.clone(), subject.clone());
+                subject = subject.or_else(|| kind.take_body());
+                let about = subject.map(|name| scene.robots_named(&name, path, source)).transpose()?;
+                Ok(Self { about, ..Self::new(&kind, path, channels, scene, source)? })
+            }
+            Quantity::Channels(channels) => Ok(Self::of(Measure::Channels(*channels), None)),
+        }
+    }
+
+    fn of(measure: Measure, thing: Option<BodyId>) -> Self {
         let nowhere = Pose::planar([0.0; 2], 0.0);
-        Ok(Self { measure, thing, place: nowhere, began: nowhere })
+        Self { measure, thing, place: nowhere, began: nowhere, formula: None, about: None }
+    }
+
+    /// Iterates over the terms of the formula, if any.
+    fn inner(&self) -> impl Iterator<Item = &Self> {
+        self.formula.iter().flat_map(|formula| &formula.terms)
     }
 
     /// Checks if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
         matches!(self.measure, Measure::Speed | Measure::Forward | Measure::Progress(_) | Measure::Registered(_))
+            || self.inner().any(Self::looks_back)
     }
 
     /// Checks if the thing is a robot, which moves.
     pub(crate) fn is_about_robot(&self, scene: &Scene) -> bool {
         self.thing.is_some_and(|thing| (0..scene.robots.len()).any(|robot| scene.parts(robot).body == thing))
+            || self.inner().any(|term| term.is_about_robot(scene))
     }
 
     /// Checks if the measure needs food or energy.
     pub(crate) fn of_foraging(&self) -> bool {
         use Measure::{Alive, CarriedFood, Deaths, Energy, Food, LostFood};
         matches!(self.measure, Food | CarriedFood | LostFood | Deaths | Energy | Alive)
+            || self.inner().any(Self::of_foraging)
     }
 
     /// Checks if the measure has one value for the whole team.
     pub(crate) fn is_of_team(&self) -> bool {
-        use Measure::{CarriedFood, Clusters, Deaths, Dispersion, Food, FullestArea, LargestCluster, LostFood};
-        matches!(
-            self.measure,
-            Food | CarriedFood | LostFood | Deaths | FullestArea(_) | Dispersion | Clusters | LargestCluster
-        )
+        use Measure::{
+            CarriedFood, Clusters, Deaths, Dispersion, Food, FullestArea, LargestCluster, LostFood, RobotsInArea,
+        };
+        match self.measure {
+            Food | CarriedFood | LostFood | Deaths | FullestArea(_) | RobotsInArea(_) | Dispersion | Clusters
+            | LargestCluster => true,
+            Measure::Formula => self.inner().all(Self::is_of_team),
+            _ => false,
+        }
     }
 
     /// Stores the pose of the thing at the start of a trial.
@@ -102,26 +155,35 @@ impl Term {
                 world.begin(&mut **term);
             }
         }
+        if let Some(formula) = &mut self.formula {
+            formula.terms.iter_mut().for_each(|term| term.begin(world));
+        }
     }
 
-    /// Updates a registered measure after a step.
+    /// Updates registered measures after a step.
     pub(crate) fn step<W: ArenaWorld>(&mut self, world: &W) {
         if let Measure::Registered(terms) = &mut self.measure {
             for term in terms {
                 world.step_term(&mut **term);
             }
         }
+        if let Some(formula) = &mut self.formula {
+            formula.terms.iter_mut().for_each(|term| term.step(world));
+        }
     }
 
-    /// Checks if the measure is registered.
+    /// Checks if the measure, or one of a formula, is registered.
     pub(crate) fn is_registered(&self) -> bool {
-        matches!(self.measure, Measure::Registered(_))
+        matches!(self.measure, Measure::Registered(_)) || self.inner().any(Self::is_registered)
     }
 
     /// Updates the pose of the thing.
     pub(crate) fn locate<W: ArenaWorld>(&mut self, world: &W) {
         if let Some(thing) = self.thing {
             self.place = world.pose(thing);
+        }
+        if let Some(formula) = &mut self.formula {
+            formula.terms.iter_mut().for_each(|term| term.locate(world));
         }
     }
 
@@ -243,11 +305,7 @@ impl Term {
             Measure::Energy => forager().map_or(0.0, |forager| forager.energy),
             Measure::Alive => yes(forager().is_some_and(|forager| forager.alive)),
             Measure::Held => yes(world.attached(parts.body).is_some()),
-            Measure::Effort => {
-                let y = Rows::of(rows.y, rows.outputs, robot);
-                let squares: f64 = y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum();
-                squares / y.len().max(1) as f64
-            }
+            Measure::Effort => effort(Rows::of(rows.y, rows.outputs, robot)),
             // Mean of (2 y - 1)^2, because a motor rests at y = 1/2.
             Measure::Control => {
                 let y = Rows::of(rows.y, rows.outputs, robot);
@@ -259,17 +317,54 @@ impl Term {
             Measure::Contact { radius, within } => {
                 self.contact(world, parts, self.gap(pose, numbers.radius + radius), *within)
             }
-            // 1 - t / T, and its rest of 1.
-            Measure::TimeLeft { rest: [first, end] } => {
-                let left = 1.0 - f64::from(rows.steps[0]) / f64::from(rows.steps[1]);
-                if (*first..*end).contains(&robot) { 1.0 - left } else { left }
+            Measure::TimeLeft { rest } => time_left(rows.steps, *rest, robot),
+            Measure::Step => f64::from(rows.steps[0]),
+            Measure::Channels(channels) => {
+                channels.value(Rows::of(rows.x, rows.inputs, robot), Rows::of(rows.y, rows.outputs, robot))
             }
             Measure::Registered(terms) => terms.get(robot).map_or(f64::NAN, |term| world.value(&**term)),
             Measure::Near { .. } | Measure::Touch | Measure::Steps => {
                 self.quick(world, parts, pose, numbers).unwrap_or(0.0)
             }
+            // Terms of formulas are no formulas, and other formulas are computed without this dispatch.
+            Measure::Formula => f64::NAN,
             _ => self.team_value(world, rows, numbers.radius),
         }
+    }
+
+    /// Returns the robots that a quantity of a condition is about, by default all.
+    pub(crate) fn about(&self) -> Option<[usize; 2]> {
+        self.about
+    }
+
+    /// Returns true for a formula.
+    #[inline]
+    pub(crate) fn is_formula(&self) -> bool {
+        self.formula.is_some()
+    }
+
+    /// Computes the formula for robot number `robot`. `of` returns the parts and numbers of a robot.
+    #[inline(always)]
+    pub(crate) fn formula_value<'r, W: ArenaWorld>(
+        &self,
+        world: &W,
+        (rows, robot): (&Rows<'_>, usize),
+        of: impl Fn(usize) -> (&'r MobileParts, &'r Numbers),
+    ) -> f64 {
+        let Some(formula) = &self.formula else { return f64::NAN };
+        let value = |term: &Self, robot: usize| {
+            let (parts, numbers) = of(robot);
+            let quick = term.quick(world, parts, &rows.poses[robot], numbers);
+            quick.unwrap_or_else(|| term.value(world, parts, (rows, robot), numbers))
+        };
+        formula.program.evaluate(|number| {
+            let term = &formula.terms[number];
+            let Some([first, end]) = term.about else { return value(term, robot) };
+            // A smaller team lacks its last robots.
+            let robots = first..end.min(rows.poses.len());
+            let count = robots.len().max(1) as f64;
+            robots.map(|robot| value(term, robot)).sum::<f64>() / count
+        })
     }
 
     /// Returns a measure of the whole team, whose robots have this radius [m].
@@ -291,6 +386,10 @@ impl Term {
                     }
                 }
                 share(f64::from(robots.into_iter().max().unwrap_or(0)))
+            }
+            Measure::RobotsInArea(areas) => {
+                let inside = |pose: &&Pose| areas.iter().any(|area| is_in(area, pose, world));
+                rows.poses.iter().filter(inside).count() as f64
             }
             Measure::Dispersion => gathering().dispersion,
             Measure::Clusters => gathering().clusters as f64,
@@ -317,6 +416,18 @@ fn is_in<W: ArenaWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
     // In the axes of the rectangle, where its sides are parallel to u and v.
     let [u, v] = turned(&area, [0, 1].map(|k| f64::from(robot.position[k] - area.position[k])));
     u.abs() <= half[0] && v.abs() <= half[1]
+}
+
+/// Computes the mean square of motor values.
+fn effort(y: &[f32]) -> f64 {
+    let squares: f64 = y.iter().map(|y| f64::from(*y) * f64::from(*y)).sum();
+    squares / y.len().max(1) as f64
+}
+
+/// Computes 1 - t / T from the steps so far and those of the longest trial, or its rest of 1 for some robots.
+fn time_left([steps, most]: [u32; 2], [first, end]: [usize; 2], robot: usize) -> f64 {
+    let left = 1.0 - f64::from(steps) / f64::from(most);
+    if (first..end).contains(&robot) { 1.0 - left } else { left }
 }
 
 fn yes(flag: bool) -> f64 {

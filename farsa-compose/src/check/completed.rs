@@ -10,17 +10,36 @@ use crate::document::{
 };
 use crate::part::definition::{Build, Definition};
 
+/// Adds the defaults of keys to those of a part.
+fn complete_keys(
+    what: &'static str,
+    kind: &str,
+    keys: &mut Map<String, Value>,
+    (path, source): (&str, &Source),
+) -> Result<(), Error> {
+    let of_kind = |definition: &&Definition| definition.name == kind && place(&definition.build).2 == what;
+    let definition = source.registry.definitions.iter().find(of_kind);
+    let definition = definition.ok_or_else(|| source.wrong(path, format!("`{kind}` is no {what}")))?;
+    *keys = (definition.complete)(keys).map_err(|why| source.wrong(path, why))?;
+    Ok(())
+}
+
+/// Adds the defaults of a registered term.
+///
+/// # Errors
+/// [`Error::Setting`] for keys that the term refuses.
+pub(crate) fn complete_term(term: &mut RewardKind, path: &str, source: &Source) -> Result<(), Error> {
+    let RewardKind::Registered { kind, keys } = term else { return Ok(()) };
+    complete_keys("term", kind, keys, (path, source))
+}
+
 /// Adds the defaults of registered parts to a document.
 ///
 /// # Errors
 /// [`Error::Setting`] for keys that the part refuses.
 pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), Error> {
     let completed = |what: &'static str, kind: &str, keys: &mut Map<String, Value>, path: &str| {
-        let of_kind = |definition: &&Definition| definition.name == kind && place(&definition.build).2 == what;
-        let definition = source.registry.definitions.iter().find(of_kind);
-        let definition = definition.ok_or_else(|| source.wrong(path, format!("`{kind}` is no {what}")))?;
-        *keys = (definition.complete)(keys).map_err(|why| source.wrong(path, why))?;
-        Ok::<(), Error>(())
+        complete_keys(what, kind, keys, (path, source))
     };
     let wrapped = |wrappers: &mut [Wrapper], path: &str| {
         for (number, wrapper) in wrappers.iter_mut().enumerate() {
@@ -45,9 +64,7 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
         }
     }
     for (index, term) in document.reward.iter_mut().enumerate() {
-        if let RewardKind::Registered { kind, keys } = &mut term.kind {
-            completed("term", kind, keys, &format!("/reward/{index}"))?;
-        }
+        complete_term(&mut term.kind, &format!("/reward/{index}"), source)?;
     }
     for (index, start) in document.start.iter_mut().enumerate() {
         if let Placing::Registered { at, keys } = &mut start.how {

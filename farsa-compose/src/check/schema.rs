@@ -11,7 +11,29 @@ fn of_documents() -> Value {
     let settings = schemars::generate::SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Document>().to_value();
     close(&mut schema);
+    admit_formulas(&mut schema);
     schema
+}
+
+/// Lists of terms and conditions, whose items may be formulas.
+const WITH_FORMULAS: [&str; 4] = ["reward", "success", "end", "failure"];
+
+/// Admits a text instead of a list of terms or conditions and of each item, and a term with a formula and no kind.
+fn admit_formulas(schema: &mut Value) {
+    let text = serde_json::json!({ "type": "string", "maxLength": 2000, "description": "A formula." });
+    for list in WITH_FORMULAS {
+        let Some(part) = schema.pointer_mut(&format!("/properties/{list}")).and_then(Value::as_object_mut) else {
+            continue;
+        };
+        let (kind, items) = (part.remove("type"), part.remove("items"));
+        let items = serde_json::json!({ "anyOf": [items, text] });
+        let list = serde_json::json!({ "type": kind, "items": items });
+        part.insert("anyOf".into(), serde_json::json!([list, text]));
+    }
+    let branches = schema.pointer_mut("/$defs/Reward/oneOf").and_then(Value::as_array_mut).into_iter().flatten();
+    for branch in branches.filter(|branch| branch.pointer("/properties/kind/const") == Some(&"formula".into())) {
+        branch["required"] = serde_json::json!(["formula"]);
+    }
 }
 
 /// Schema of documents, built once because it takes a megabyte.
@@ -118,6 +140,11 @@ impl<'s> Part<'s> {
         self.branches("anyOf").find(|part| !null(part)).unwrap_or(self)
     }
 
+    /// Returns true for a list, term or condition that may also be a formula.
+    pub(crate) fn admits_formula(self) -> bool {
+        self.branches("anyOf").any(|part| part.own.get("type").is_some_and(|kind| kind == "string"))
+    }
+
     /// Returns the type of the value.
     pub(crate) fn kind(self) -> Kind {
         let part = self.given();
@@ -160,6 +187,11 @@ impl<'s> Part<'s> {
     pub(crate) fn lengths(self) -> [Option<u64>; 2] {
         let part = self.given();
         ["minItems", "maxItems"].map(|name| part.word(name).and_then(Value::as_u64))
+    }
+
+    /// Gets the greatest number of characters of a text, if any.
+    pub(crate) fn most_characters(self) -> Option<usize> {
+        self.given().word("maxLength")?.as_u64()?.try_into().ok()
     }
 
     /// Gets the pattern of a text, if any.
@@ -223,9 +255,12 @@ impl<'s> Part<'s> {
     pub(crate) fn about(self, list: &str, word: &str) -> &'s str {
         let keys = self.keys(&|_| None);
         let items = keys.named.iter().find(|(name, _)| *name == list).and_then(|(_, part)| part.items());
-        let Some(items) = items else { return "" };
-        let branch = items.branches("oneOf").find(|branch| branch.tag().is_some_and(|(_, own)| own == word));
-        branch.map_or("", Self::description)
+        items.and_then(|items| items.branch(word)).map_or("", Self::description)
+    }
+
+    /// Returns the branch that a word selects.
+    pub(crate) fn branch(self, word: &str) -> Option<Self> {
+        self.given().branches("oneOf").find(|branch| branch.tag().is_some_and(|(_, own)| own == word))
     }
 
     /// Returns the key and the word that select a branch.

@@ -11,6 +11,10 @@ use crate::name::{NAME, is_name};
 
 /// Most parts of a list.
 const MAX_PARTS: usize = 1000;
+/// Most characters of a text without its own limit.
+const MAX_CHARACTERS: usize = 1000;
+/// Kind of a term with a formula, and the key of the formula.
+const FORMULA: &str = "formula";
 /// Most errors of one text.
 const MAX_ERRORS: usize = 20;
 
@@ -77,6 +81,11 @@ impl Walk<'_> {
         let wrong = |why: String| self.source.wrong(path, why);
         match (part.kind(), value.get_ref()) {
             (Kind::Table, DeValue::Table(table)) => self.table(part, table, path, offset),
+            (Kind::List, DeValue::String(_)) if part.admits_formula() => {
+                let item = part.items().unwrap_or(part);
+                Ok(Value::Array(vec![self.value(item, value, &format!("{path}/0"))?]))
+            }
+            (Kind::Table, DeValue::String(text)) if part.admits_formula() => self.formula(part, text, path),
             (Kind::List, DeValue::Array(items)) => self.list(part, items, path),
             (Kind::Flag | Kind::Any, DeValue::Boolean(flag)) => Ok(Value::Bool(*flag)),
             (Kind::Text | Kind::Any, DeValue::String(text)) => self.text(part, text, path),
@@ -109,7 +118,16 @@ impl Walk<'_> {
             let (_, value) = table.iter().find(|(key, _)| key.get_ref() == name)?;
             value.get_ref().as_str()
         };
-        let keys = part.keys(&tag);
+        let mut keys = part.keys(&tag);
+        // A term with a formula needs no kind.
+        let is_formula = keys
+            .tag
+            .as_ref()
+            .is_some_and(|(tag, words)| !has(table, tag) && has(table, FORMULA) && words.contains(&FORMULA));
+        if is_formula {
+            keys = part.keys(&|name| (name == "kind").then_some(FORMULA));
+            keys.tag = None;
+        }
         if let Some((tag, words)) = keys.tag.as_ref().filter(|(name, _)| tag(name).is_none() && !has(table, name)) {
             // The tag may be misspelled.
             let mut valid = vec![*tag];
@@ -155,11 +173,26 @@ impl Walk<'_> {
             self.source.put(&path, line);
             found.insert(name.into(), value);
         }
+        if is_formula {
+            found.insert("kind".into(), FORMULA.into());
+        }
         // The key may be misspelled.
         if let Some(missing) = keys.required.iter().find(|name| !misnamed && !found.contains_key(**name)) {
             return Err(self.source.wrong(path, format!("lacks the key `{missing}`")));
         }
         Ok(Value::Object(found))
+    }
+
+    /// Reads a text as a term or condition with this formula.
+    fn formula(&self, part: Part<'_>, text: &str, path: &str) -> Result<Value, Error> {
+        let keys = part.keys(&|name| (name == "kind").then_some(FORMULA));
+        let key = keys.named.iter().find(|(name, _)| *name == FORMULA).map_or(part, |(_, key)| *key);
+        let mut table = Map::new();
+        table.insert(FORMULA.into(), self.text(key, text, path)?);
+        if keys.tag.is_some() {
+            table.insert("kind".into(), FORMULA.into());
+        }
+        Ok(Value::Object(table))
     }
 
     fn list(&mut self, part: Part<'_>, items: &[Spanned<DeValue<'_>>], path: &str) -> Result<Value, Error> {
@@ -191,8 +224,10 @@ impl Walk<'_> {
         if path.starts_with("/files/") {
             return Ok(Value::from(text));
         }
-        if text.chars().count() > 1000 || text.chars().any(char::is_control) {
-            return Err(self.source.wrong(path, "is longer than 1000 characters or has control characters"));
+        let most = part.most_characters().unwrap_or(MAX_CHARACTERS);
+        if text.chars().count() > most || text.chars().any(char::is_control) {
+            let why = format!("is longer than {most} characters or has control characters");
+            return Err(self.source.wrong(path, why));
         }
         Ok(Value::from(text))
     }

@@ -41,6 +41,12 @@ pub struct Reward {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RewardKind {
+    /// Value of a formula of terms and channels.
+    Formula {
+        /// Formula, such as `1 - distance(lamp) / 0.3 m`.
+        #[schemars(length(max = 2000))]
+        formula: String,
+    },
     /// 1 while the surfaces of robot and thing are closer than this.
     Near {
         /// Name of the thing.
@@ -150,6 +156,16 @@ pub enum RewardKind {
         #[serde(default)]
         joints: Vec<String>,
     },
+    /// Position of a joint [rad or m].
+    JointPosition {
+        /// Name of a joint of a robot with joints.
+        joint: String,
+    },
+    /// Speed of a joint with its sign [rad/s or m/s].
+    JointVelocity {
+        /// Name of a joint of a robot with joints.
+        joint: String,
+    },
     /// Mean speed of the wheels, as a share of the greatest speed: 0 to 1.
     WheelSpeed {},
     /// Difference of the wheel speeds, without its sign [rad/s].
@@ -171,6 +187,11 @@ pub enum RewardKind {
     },
     /// Share of the robots whose centers are in the same area, for the area with the most of them.
     FullestArea {
+        /// Name of a disc or rectangle, or of several.
+        area: String,
+    },
+    /// Number of robots whose centers are in an area.
+    RobotsInArea {
         /// Name of a disc or rectangle, or of several.
         area: String,
     },
@@ -202,6 +223,8 @@ pub enum RewardKind {
     Control {},
     /// 1 in every step.
     Steps {},
+    /// Number of steps since the start.
+    Step {},
     /// Time since the start [s].
     Time {},
     /// Distance between the hulls of robot and thing [m].
@@ -233,6 +256,24 @@ pub enum RewardKind {
         #[serde(flatten)]
         keys: Map<String, Value>,
     },
+}
+
+impl RewardKind {
+    /// Takes the name of the measured body, if any.
+    pub(crate) fn take_body(&mut self) -> Option<String> {
+        match self {
+            Self::Near { body, .. }
+            | Self::Distance { body, .. }
+            | Self::Approach { body, .. }
+            | Self::Displacement { body }
+            | Self::Speed { body }
+            | Self::Forward { body }
+            | Self::Progress { body, .. }
+            | Self::Position { body, .. } => body.take(),
+            Self::Touch { bodies, .. } if bodies.len() == 1 => bodies.pop(),
+            _ => None,
+        }
+    }
 }
 
 /// Aggregations over the steps of a trial.
@@ -273,11 +314,15 @@ pub enum Trials {
     Worst,
 }
 
-/// A condition on the last step's value of a term, before its weight.
+/// A condition: a formula, or limits on the last step's value of a term, before its weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Condition {
-    /// Name of a term.
-    pub term: String,
+    /// Formula, such as `time > 5 and near(lamp, 0.1) > 0 for 1 s`. Its quantities are means over the robots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(max = 2000))]
+    pub formula: Option<String>,
+    /// Name of a term, unless there is a formula.
+    pub term: Option<String>,
     /// Name of a group of robots. The condition is for trials in which it evolves, by default for all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,

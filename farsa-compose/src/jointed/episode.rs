@@ -183,6 +183,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         self.agents.ledger.steps += 1;
         self.setup.terms.iter_mut().for_each(|term| term.step(world));
         self.measure(world, false);
+        self.agents.ledger.count_conditions();
         // Terms may be finite in a world that is not, so the bodies are checked separately.
         self.agents.ledger.failed |= !self.is_sane(world);
         let Agents { document, ledger, .. } = &self.agents;
@@ -216,7 +217,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
             recorder.pose(BodyId((bodies + number) as u16), Pose::at(*place));
         }
         let mut scalars: Vec<f64> = self.setup.joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
-        for (tally, term) in ledger.tallies.iter().zip(&self.setup.terms) {
+        for (tally, term) in ledger.shown().iter().zip(&self.setup.terms) {
             scalars.push(if tally.late { term.value(world, &self.markers, &self.agents) } else { tally.last });
         }
         scalars.push(ledger.earned());

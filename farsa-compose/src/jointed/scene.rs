@@ -216,6 +216,42 @@ impl Scene {
         Ok((NamedPoint::Body(Point { body, at: placement.position.map(|x| x as f32) }), 0.0))
     }
 
+    /// Returns a point of a body of the robot or of a thing. Without a name it is that of the first body.
+    pub(crate) fn part_or_thing(
+        &self,
+        name: Option<&String>,
+        point: [f64; 3],
+        path: &str,
+        source: &Source,
+    ) -> Result<NamedPoint, Error> {
+        let thing = self.things.iter().find(|thing| Some(&thing.name) == name);
+        let path_of_name = || format!("{path}/body");
+        match (thing.map(|thing| thing.what), name) {
+            (Some(What::Body(body)), _) => Ok(NamedPoint::Body(Point { body, at: point.map(|x| x as f32) })),
+            (Some(_), Some(name)) if point == [0.0; 3] => Ok(self.point_named(name, &path_of_name(), source)?.0),
+            (Some(_), _) => Err(source.wrong(&format!("{path}/point"), "is for bodies that move")),
+            (None, Some(name)) if self.body(Some(name), path, source).is_err() => {
+                let names = self.body_names().into_iter().chain(self.things.iter().map(|thing| thing.name.as_str()));
+                Err(Error::unknown(&source.of(&path_of_name()), "body", name, names))
+            }
+            (None, name) => Ok(NamedPoint::Body(self.point(name, point, path, source)?)),
+        }
+    }
+
+    /// Returns a named joint of the robot.
+    pub(crate) fn joint(&self, name: &str, path: &str, source: &Source) -> Result<JointId, Error> {
+        let joints = || self.robot.joints().filter(|joint| joint.index() < self.own[0]);
+        let named = joints().find(|joint| self.joint_name(*joint) == name);
+        let valid = joints().map(|joint| self.joint_name(joint));
+        named.ok_or_else(|| Error::unknown(&source.of(&format!("{path}/joint")), "joint", name, valid))
+    }
+
+    /// Returns true for a joint that slides instead of turning.
+    pub(crate) fn is_rail(&self, joint: JointId) -> bool {
+        let segment = self.robot.segments.get(joint.index());
+        segment.is_some_and(|segment| segment.joint.kind == farsa_body::robot::JointKind::Prismatic)
+    }
+
     /// Returns named joints, or without names all of the robot for which `all` is true.
     pub(crate) fn joints(
         &self,

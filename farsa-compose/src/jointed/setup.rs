@@ -7,6 +7,7 @@ use farsa_physics::articulated::Options;
 
 use crate::check::source::Source;
 use crate::document::{Document, Ending, Engine, SensorKind};
+use crate::formula::compile::Quantity;
 use crate::jointed::actuation;
 use crate::jointed::driving::{Driving, motor};
 use crate::jointed::scene::{ROBOT, Scene};
@@ -14,6 +15,7 @@ use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
 use crate::parts::agents::Agents;
+use crate::parts::conditions::FormulaConditions;
 use crate::parts::equipment::Equipment;
 use crate::parts::groups::Groups;
 use crate::parts::ledger::Ledger;
@@ -53,13 +55,16 @@ impl Setup {
         let equipment = Equipment { sensors, motors };
         let spec = NetworkSpec::new(&document, equipment.channels(), source)?;
         budget.take(spec.values(), "/network", source)?;
+        let channels = spec.channel_names();
         let term = |(number, reward): (usize, &crate::document::Reward)| {
-            Term::new(&reward.kind, &format!("/reward/{number}"), &spec.sensors, &scene, source)
+            Term::new(&reward.kind, &format!("/reward/{number}"), channels, &scene, source)
         };
-        let terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
+        let mut terms = document.reward.iter().enumerate().map(term).collect::<Result<Vec<_>, _>>()?;
         let groups = Groups::new([(ROBOT.to_owned(), 1)], false);
+        let mut make = |quantity: &Quantity, path: &str| Term::from_quantity(quantity, path, channels, &scene, source);
+        let conditions = FormulaConditions::new(&document, channels, &mut terms, &mut make, source)?;
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
-        let mut ledger = Ledger::new(&document, &of_steps, &groups, source)?;
+        let mut ledger = Ledger::new(&document, &of_steps, (conditions, &[]), &groups, source)?;
         ledger.warnings.extend(actuation::warnings(&scene));
         let starting = Starting::new(&document, &scene, source)?;
         let segments = scene.robot.segments.iter().enumerate();

@@ -7,6 +7,8 @@ use farsa_num::Scalar;
 
 use crate::check::source::Source;
 use crate::document::RewardKind;
+use crate::formula::channels::{ChannelNames, Channels};
+use crate::formula::compile::{Formula, Quantity, Scope};
 use crate::jointed::SpatialWorld;
 use crate::jointed::named_point::NamedPoint;
 use crate::jointed::registered::{self, PartOfSpatial};
@@ -29,16 +31,23 @@ enum Measure {
     Forward(Point),
     /// With the components of a unit vector of the world.
     Progress(Point, [f64; 3]),
-    Position(Point, [f64; 3]),
-    Height(Point),
+    Position(NamedPoint, [f64; 3]),
+    Height(NamedPoint),
     Upright(BodyId),
     JointSpeed(Vec<JointId>),
+    JointPosition(JointId),
+    JointVelocity(JointId),
     /// Channels of the network's inputs.
     Sensor([usize; 2]),
     Effort,
     Control,
     Steps,
     Registered(Box<dyn SpatialTerm>),
+    Step,
+    Time,
+    Channels(Channels),
+    /// Value of the term's formula.
+    Formula,
 }
 
 /// A measure with its state in a trial.
@@ -50,24 +59,75 @@ pub(crate) struct Term {
     before: [f64; 3],
     /// Distance at the start [m].
     far: f64,
+    formula: Option<Box<Formula<Self>>>,
 }
 
 impl Term {
-    /// Reads a term at a path of the document. `sensors` are the channels of the robot.
+    /// Reads a term at a path of the document. `channels` are those of the robot.
     pub(crate) fn new(
         kind: &RewardKind,
         path: &str,
-        sensors: &[(String, [usize; 2])],
+        channels: ChannelNames<'_>,
         scene: &Scene,
         source: &Source,
     ) -> Result<Self, Error> {
-        let measure = measure(kind, path, sensors, scene, source)?;
-        Ok(Self { measure, began: [0.0; 3], before: [0.0; 3], far: 0.0 })
+        if let RewardKind::Formula { formula } = kind {
+            let path = format!("{path}/formula");
+            let mut make =
+                |quantity: &Quantity, path: &str| Self::from_quantity(quantity, path, channels, scene, source);
+            let mut formula = Scope { path: &path, channels, source }.term(formula, &mut make)?;
+            if formula.program.is_one_quantity()
+                && let Some(term) = formula.terms.pop()
+            {
+                return Ok(term);
+            }
+            return Ok(Self { formula: Some(Box::new(formula)), ..Self::of(Measure::Formula) });
+        }
+        Ok(Self::of(measure(kind, path, channels.sensors, scene, source)?))
+    }
+
+    /// Reads the term of a formula's quantity, with the number of its unit: 0 for hinges and 1 for rails.
+    pub(crate) fn from_quantity(
+        quantity: &Quantity,
+        path: &str,
+        channels: ChannelNames<'_>,
+        scene: &Scene,
+        source: &Source,
+    ) -> Result<(Self, usize), Error> {
+        let contact;
+        let kind = match quantity {
+            Quantity::Measure(kind, None) => kind,
+            Quantity::Measure(RewardKind::Contact { object, within }, Some(body)) if *within == 0.0 => {
+                contact = RewardKind::Touch { bodies: vec![body.clone()], with: Some(object.clone()) };
+                &contact
+            }
+            Quantity::Measure(_, Some(name)) => {
+                return Err(source.wrong(path, format!("is about the whole robot; `{name}` cannot be named")));
+            }
+            Quantity::Channels(channels) => return Ok((Self::of(Measure::Channels(*channels)), 0)),
+        };
+        let term = Self::new(kind, path, channels, scene, source)?;
+        let joints = match &term.measure {
+            Measure::JointSpeed(joints) => &joints[..],
+            Measure::JointPosition(joint) | Measure::JointVelocity(joint) => std::slice::from_ref(joint),
+            _ => &[],
+        };
+        let rails = joints.iter().filter(|joint| scene.is_rail(**joint)).count();
+        if (1..joints.len()).contains(&rails) {
+            return Err(source.wrong(path, "mixes hinges and rails, whose units differ; name the joints"));
+        }
+        Ok((term, usize::from(rails > 0)))
+    }
+
+    fn of(measure: Measure) -> Self {
+        Self { measure, began: [0.0; 3], before: [0.0; 3], far: 0.0, formula: None }
     }
 
     /// Checks if the measure depends on the previous step.
     pub(crate) fn looks_back(&self) -> bool {
+        let inner = self.formula.iter().flat_map(|formula| &formula.terms);
         matches!(self.measure, Measure::Forward(_) | Measure::Progress(..) | Measure::Registered(_))
+            || inner.into_iter().any(Self::looks_back)
     }
 
     /// Stores the state at the start of a trial.
@@ -80,6 +140,9 @@ impl Term {
         if let Measure::Approach(point_named, point) = &self.measure {
             self.far = apart(point_named.position(world, markers), place_of(world, point));
         }
+        if let Some(formula) = &mut self.formula {
+            formula.terms.iter_mut().for_each(|term| term.begin(world, markers));
+        }
     }
 
     /// Updates a registered measure after a step.
@@ -87,11 +150,16 @@ impl Term {
         if let Measure::Registered(term) = &mut self.measure {
             world.step_term(&mut **term);
         }
+        if let Some(formula) = &mut self.formula {
+            formula.terms.iter_mut().for_each(|term| term.step(world));
+        }
     }
 
     /// Stores the position for the next step.
     pub(crate) fn remember<W: SpatialWorld>(&mut self, world: &W, markers: &[[f32; 3]]) {
-        if self.looks_back() {
+        if let Some(formula) = &mut self.formula {
+            formula.terms.iter_mut().for_each(|term| term.remember(world, markers));
+        } else if self.looks_back() {
             self.before = self.place(world, markers);
         }
     }
@@ -137,15 +205,17 @@ impl Term {
                 x * u + y * v + z * w
             }
             Measure::Position(point, [u, v, w]) => {
-                let [x, y, z] = place_of(world, point);
+                let [x, y, z] = point.position(world, markers);
                 x * u + y * v + z * w
             }
-            Measure::Height(point) => place_of(world, point)[2],
+            Measure::Height(point) => point.position(world, markers)[2],
             // z component of the body's z axis in the world.
             Measure::Upright(body) => f64::from(world.pose(*body).rotate([0.0, 0.0, 1.0])[2]),
             Measure::JointSpeed(joints) => {
                 mean(joints.iter().map(|joint| f64::from(world.speed(*joint)).abs()).sum(), joints.len())
             }
+            Measure::JointPosition(joint) => f64::from(world.position(*joint)),
+            Measure::JointVelocity(joint) => f64::from(world.speed(*joint)),
             Measure::Sensor([first, end]) => {
                 let channels = agents.x.get(*first..*end).unwrap_or_default();
                 channels.iter().map(|x| f64::from(*x)).reduce(Scalar::max).unwrap_or(0.0)
@@ -158,6 +228,12 @@ impl Term {
             }
             Measure::Steps => 1.0,
             Measure::Registered(term) => world.value(&**term),
+            Measure::Step => f64::from(agents.ledger.steps),
+            Measure::Time => f64::from(agents.ledger.steps) * agents.document.world.time_step,
+            Measure::Channels(channels) => channels.value(&agents.x, &agents.y),
+            Measure::Formula => self.formula.as_ref().map_or(f64::NAN, |formula| {
+                formula.program.evaluate(|number| formula.terms[number].value(world, markers, agents))
+            }),
         }
     }
 
@@ -177,6 +253,7 @@ fn measure(
 ) -> Result<Measure, Error> {
     let point_named = |object: &String| scene.point_named(object, &format!("{path}/object"), source);
     let point = |body: &Option<String>, at: &[f64; 3]| scene.point(body.as_ref(), *at, path, source);
+    let part = |name: &Option<String>, at: &[f64; 3]| scene.part_or_thing(name.as_ref(), *at, path, source);
     let body = |name: &Option<String>| scene.body(name.as_ref(), &format!("{path}/body"), source).map(|(body, _)| body);
     let direction = |along: &[f64; 3]| {
         let far = length(*along);
@@ -194,13 +271,21 @@ fn measure(
         RewardKind::Touch { bodies, with } => Measure::Touch(scene.pairs(bodies, with.as_ref(), path, source)?),
         RewardKind::Displacement { body } => Measure::Displacement(point(body, &[0.0; 3])?),
         RewardKind::Moved { object } => Measure::Moved(point_named(object)?.0),
-        RewardKind::Speed { body } => Measure::Speed(point(body, &[0.0; 3])?),
+        RewardKind::Contact { object, within } if *within == 0.0 => {
+            Measure::Touch(scene.pairs(&[], Some(object), path, source)?)
+        }
+        RewardKind::Speed { body } => match part(body, &[0.0; 3])? {
+            NamedPoint::Body(point) => Measure::Speed(point),
+            NamedPoint::Marker(_) => return Err(source.wrong(path, "is about a marker, which has no speed")),
+        },
         RewardKind::Forward { body } => Measure::Forward(point(body, &[0.0; 3])?),
         RewardKind::Progress { along, body } => Measure::Progress(point(body, &[0.0; 3])?, direction(along)?),
-        RewardKind::Position { along, body, point: at } => Measure::Position(point(body, at)?, direction(along)?),
-        RewardKind::Height { body, point: at } => Measure::Height(point(body, at)?),
+        RewardKind::Position { along, body, point: at } => Measure::Position(part(body, at)?, direction(along)?),
+        RewardKind::Height { body, point: at } => Measure::Height(part(body, at)?),
         RewardKind::Upright { body: name } => Measure::Upright(body(name)?),
         RewardKind::JointSpeed { joints } => Measure::JointSpeed(scene.joints(joints, |_| true, path, source)?),
+        RewardKind::JointPosition { joint } => Measure::JointPosition(scene.joint(joint, path, source)?),
+        RewardKind::JointVelocity { joint } => Measure::JointVelocity(scene.joint(joint, path, source)?),
         RewardKind::Sensor { sensor } => {
             let names = sensors.iter().map(|(name, _)| name.as_str());
             let number = source.position(names, ("sensor", sensor), &format!("{path}/sensor"))?;
@@ -209,6 +294,8 @@ fn measure(
         RewardKind::Effort {} => Measure::Effort,
         RewardKind::Control {} => Measure::Control,
         RewardKind::Steps {} => Measure::Steps,
+        RewardKind::Step {} => Measure::Step,
+        RewardKind::Time {} => Measure::Time,
         RewardKind::Registered { kind, keys } => {
             Measure::Registered(registered::term(kind, keys, PartOfSpatial { scene, path, source })?)
         }

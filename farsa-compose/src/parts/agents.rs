@@ -141,7 +141,7 @@ impl Agents {
         };
         // A recording has its own column of this name.
         let name = |tally: &Tally| if tally.label() == "time [s]" { tally.name.clone() } else { tally.label().into() };
-        let terms = self.ledger.tallies.iter().map(|tally| Channel::new(&name(tally)).group("term"));
+        let terms = self.ledger.shown().iter().map(|tally| Channel::new(&name(tally)).group("term"));
         let fitness = Channel::new("fitness so far").group("fitness");
         Schema { scalars: scalars.into_iter().chain(terms).chain([fitness]).collect(), ..schema }
     }

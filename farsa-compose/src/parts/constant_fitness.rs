@@ -2,6 +2,7 @@
 
 use crate::check::source::Source;
 use crate::document::{Document, MotorKind, ObjectKind, RewardKind, SensorKind};
+use crate::formula::compile::is_constant as is_constant_formula;
 use crate::parts::groups::Groups;
 
 /// Describes the fitness of a document if it has one value for all individuals.
@@ -35,7 +36,8 @@ fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Sou
     let alone = groups.robots() == 1;
     let foraging = document.foraging.as_ref();
     match &term.kind {
-        RewardKind::Steps {} | RewardKind::Time {} | RewardKind::TimeLeft { .. } => true,
+        RewardKind::Steps {} | RewardKind::Step {} | RewardKind::Time {} | RewardKind::TimeLeft { .. } => true,
+        RewardKind::Formula { formula } => is_constant_formula(formula),
         RewardKind::NearOthers {}
         | RewardKind::Dispersion {}
         | RewardKind::Clusters {}

@@ -10,6 +10,7 @@ use farsa_num::Scalar;
 use crate::check::source::Source;
 use crate::document::{Condition, Document, Ending, Trials};
 use crate::parts::behaviour::TermBehaviour;
+use crate::parts::conditions::FormulaConditions;
 use crate::parts::constant_fitness::warning;
 use crate::parts::groups::Groups;
 use crate::parts::tally::Tally;
@@ -18,10 +19,15 @@ use crate::parts::wanted::Wanted;
 /// Terms of a trial with their totals.
 #[derive(Clone, Debug)]
 pub(crate) struct Ledger {
+    /// Terms of the document, then those that formulas of conditions measure.
     pub(crate) tallies: Vec<Tally>,
+    /// Number of terms of the document.
+    shown: usize,
     success: Vec<Wanted>,
     failure: Vec<Wanted>,
     end: Vec<Wanted>,
+    /// Number of conditions that must hold for a time.
+    lasting: usize,
     /// Evolving robots of this trial, from the first up to the one after the last.
     evolving: [usize; 2],
     pub(crate) behaviour: Option<TermBehaviour>,
@@ -44,41 +50,61 @@ pub(crate) struct Ledger {
 
 impl Ledger {
     /// Builds the terms of a document with these robots. `of_steps` is true for terms that depend on the previous
-    /// step.
-    pub(crate) fn new(document: &Document, of_steps: &[bool], groups: &Groups, source: &Source) -> Result<Self, Error> {
+    /// step. The formulas of conditions are about these robots, by default all.
+    pub(crate) fn new(
+        document: &Document,
+        of_steps: &[bool],
+        (mut formulas, abouts): (FormulaConditions, &[Option<[usize; 2]>]),
+        groups: &Groups,
+        source: &Source,
+    ) -> Result<Self, Error> {
         let rewards = &source.names.terms;
         let tally = |(number, reward)| Tally::new(reward, number, rewards, groups, source);
         let mut tallies = document.reward.iter().enumerate().map(tally).collect::<Result<Vec<_>, _>>()?;
         if tallies.is_empty() {
             return Err(source.wrong("/reward", "has no term: nothing is earned"));
         }
-        let conditions = |list: &str, all: &[Condition]| {
-            let condition = |(index, text)| Wanted::new(text, &format!("/{list}/{index}"), rewards, groups, source);
-            all.iter().enumerate().map(condition).collect::<Result<Vec<_>, Error>>()
+        let shown = tallies.len();
+        let about = |number: usize| abouts.get(number).copied().flatten();
+        tallies.extend((0..formulas.paths.len()).map(|number| Tally::of_condition(groups, about(number))));
+        let time_step = document.world.time_step;
+        let mut conditions = |list: &str, conditions: &[Condition]| {
+            let condition = |(index, condition)| {
+                let path = format!("/{list}/{index}");
+                let formula = formulas.take(&path);
+                Wanted::new(condition, formula, (&path, time_step), rewards, groups, source)
+            };
+            conditions.iter().enumerate().map(condition).collect::<Result<Vec<_>, Error>>()
         };
         let (success, failure) = (conditions("success", &document.success)?, conditions("failure", &document.failure)?);
         let end = conditions("end", &document.end)?;
         // A late term has no value before the end of the trial, so nothing within the trial may depend on it. Success
         // matters within the trial only if it ends the trial.
         let ends_with_success = document.episode.ends.contains(&Ending::Success);
-        let watched =
-            success.iter().filter(|_| ends_with_success).chain(&failure).chain(&end).map(|wanted| wanted.term);
+        let of_steps_of = |wanted: &&Wanted| ends_with_success || wanted.steps().is_some();
+        let watched = success.iter().filter(of_steps_of).chain(&failure).chain(&end).flat_map(Wanted::terms);
         let watched: Vec<usize> = watched.chain(tallies.iter().filter_map(|tally| tally.during)).collect();
         for (number, tally) in tallies.iter_mut().enumerate() {
             tally.late = tally.may_be_late() && !of_steps[number] && !watched.contains(&number);
         }
-        let behaviour = TermBehaviour::new(&document.behaviour, &tallies, source)?;
-        let noted = tallies.iter().enumerate().filter(|(number, tally)| {
+        let behaviour = TermBehaviour::new(&document.behaviour, &tallies[..shown], source)?;
+        let noted = tallies[..shown].iter().enumerate().filter(|(number, tally)| {
             tally.is_only_measured() || behaviour.as_ref().is_some_and(|behaviour| behaviour.looks_at(*number))
         });
-        let paid: Vec<usize> = (0..tallies.len()).filter(|number| !tallies[*number].is_only_measured()).collect();
-        let paid = if paid.is_empty() { (0..tallies.len()).collect() } else { paid };
+        let paid: Vec<usize> = (0..shown).filter(|number| !tallies[*number].is_only_measured()).collect();
+        let paid = if paid.is_empty() { (0..shown).collect() } else { paid };
         let notes = noted.map(|(number, tally)| (number, lasting(&tally.note()))).collect();
+        let lasting = success.iter().chain(&failure).chain(&end).filter(|wanted| wanted.steps().is_some()).count();
+        let mut warnings: Vec<String> = warning(document, groups, source).into_iter().collect();
+        let lists = [("success", &success), ("failure", &failure), ("end", &end)];
+        warnings.extend(lists.into_iter().flat_map(|(list, wanted)| too_long(list, wanted, document, source)));
         Ok(Self {
             tallies,
+            shown,
             success,
             failure,
             end,
+            lasting,
             evolving: [0, groups.robots()],
             behaviour,
             paid,
@@ -86,7 +112,7 @@ impl Ledger {
             most_steps: document.episode.steps,
             product: document.fitness.product,
             trials: document.fitness.trials,
-            warnings: warning(document, groups, source).into_iter().collect(),
+            warnings,
             steps: 0,
             failed: false,
             succeeded: false,
@@ -97,6 +123,27 @@ impl Ledger {
     pub(crate) fn begin(&mut self, arranged: bool) {
         (self.steps, self.succeeded, self.failed) = (0, false, !arranged);
         self.tallies.iter_mut().for_each(Tally::reset);
+        self.conditions().for_each(Wanted::begin);
+    }
+
+    /// Iterates over all conditions.
+    fn conditions(&mut self) -> impl Iterator<Item = &mut Wanted> {
+        self.success.iter_mut().chain(&mut self.failure).chain(&mut self.end)
+    }
+
+    /// Gets the terms of the document.
+    pub(crate) fn shown(&self) -> &[Tally] {
+        &self.tallies[..self.shown]
+    }
+
+    /// Counts a step for conditions that must hold for a time.
+    #[inline]
+    pub(crate) fn count_conditions(&mut self) {
+        if self.lasting > 0 {
+            let Self { tallies, success, failure, end, .. } = self;
+            let conditions = success.iter_mut().chain(failure).chain(end);
+            conditions.for_each(|wanted| wanted.count(tallies));
+        }
     }
 
     /// Sets the evolving robots of the next trial, from the first up to the one after the last.
@@ -205,6 +252,17 @@ impl Ledger {
             }),
         }
     }
+}
+
+/// Lists warnings about conditions that must hold for longer than a trial.
+fn too_long(list: &str, wanted: &[Wanted], document: &Document, source: &Source) -> Vec<String> {
+    let most = document.episode.steps;
+    let long = wanted.iter().enumerate().filter(|(_, wanted)| wanted.steps().is_some_and(|steps| steps > most));
+    let warning = |(index, _)| {
+        let place = source.of(&format!("/{list}/{index}"));
+        format!("{place}: the condition must hold for more than the {most} steps of a trial, so it never holds")
+    };
+    long.map(warning).collect()
 }
 
 /// Leaks the name of a note, once for equal ones.

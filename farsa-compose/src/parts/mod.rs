@@ -10,6 +10,8 @@ pub(crate) mod blocks;
 pub(crate) mod channel_quantity;
 /// Choices among points. A choice may follow an earlier one.
 pub(crate) mod choice;
+/// Conditions that are formulas.
+pub(crate) mod conditions;
 /// Warning about a fitness that is the same for all individuals.
 mod constant_fitness;
 /// Inputs and outputs between which a network is built.

@@ -4,6 +4,7 @@ use farsa_lab::Error;
 
 use crate::check::source::Source;
 use crate::document::{Document, MotorKind};
+use crate::formula::channels::ChannelNames;
 use crate::parts::channel_quantity::changes;
 use crate::parts::ends::Ends;
 use crate::parts::network::{AnyNetwork, Named};
@@ -68,6 +69,12 @@ impl NetworkSpec {
         let searched = Searched::new(parameters, &given, &document.network, source)?;
         searched.check(&network, source)?;
         Ok(Self { sensors, motors, about, inputs, outputs, network, searched })
+    }
+
+    /// Gets the names of sensors, motors and channels.
+    pub(crate) fn channel_names(&self) -> ChannelNames<'_> {
+        let Self { sensors, motors, inputs, outputs, .. } = self;
+        ChannelNames { sensors, motors, inputs, outputs }
     }
 
     /// Gets the number of values that each robot keeps: channels, parameters and state.

@@ -82,6 +82,27 @@ impl Tally {
         })
     }
 
+    /// Builds a term that only a condition reads, about some robots or those that evolve.
+    pub(crate) fn of_condition(groups: &Groups, about: Option<[usize; 2]>) -> Self {
+        let robots = groups.robots();
+        Self {
+            name: String::new(),
+            label: None,
+            weight: 0.0,
+            over: Over::End,
+            during: None,
+            about,
+            range: about.unwrap_or([0, robots]),
+            count: about.map_or(robots, |[first, end]| end - first) as f64,
+            earns: true,
+            clip: None,
+            late: false,
+            sum: 0.0,
+            most: f64::NEG_INFINITY,
+            last: 0.0,
+        }
+    }
+
     /// Checks if only the last step matters, as far as the aggregation is concerned.
     pub(crate) fn may_be_late(&self) -> bool {
         self.over == Over::End && self.during.is_none()

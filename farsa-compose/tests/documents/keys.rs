@@ -58,6 +58,12 @@ fn meaning(fields: &Map<String, Value>) -> [String; 2] {
     [text.replace(&format!(" [{unit}]"), ""), unit]
 }
 
+/// Checks if a part may also be a text.
+fn has_text(part: &Value) -> bool {
+    let alternatives = part.get("anyOf").and_then(Value::as_array).into_iter().flatten();
+    alternatives.into_iter().any(|part| part["type"] == "string")
+}
+
 /// Words of a choice.
 fn words(fields: &Map<String, Value>) -> Vec<&str> {
     list(fields, "oneOf").iter().filter_map(|branch| branch["const"].as_str()).collect()
@@ -108,7 +114,8 @@ impl Table {
                 let (items, names) = self.value(&fields["items"]);
                 let count = range(&fields, ["minItems", "maxItems"]);
                 let of = if count.is_empty() { String::new() } else { format!(" of {count}") };
-                (format!("list{of}: {items}"), names)
+                let formula = if has_text(part) { "formula or " } else { "" };
+                (format!("{formula}list{of}: {items}"), names)
             }
             "number" => (format!("number {}", range(&fields, ["minimum", "maximum"])), Vec::new()),
             "integer" => (format!("whole number {}", range(&fields, ["minimum", "maximum"])), Vec::new()),

@@ -43,6 +43,7 @@ fn a_fitness_that_cannot_differ_is_warned_about() {
             "kind = \"moved\"\nobject = \"post\"",
             "kind = \"moved\"\nobject = \"post\"\n[[motors]]\nkind = \"attachment\"",
         ),
+        ("formula = \"2 * time + exp(0) * 1 s\"", "formula = \"time * max(infrared)\""),
         ("kind = \"held\"", "kind = \"held\"\n[[motors]]\nkind = \"attachment\""),
         ("kind = \"sensor\"\nsensor = \"still\"", "kind = \"sensor\"\nsensor = \"infrared\""),
         ("kind = \"clusters\"", "kind = \"gap\"\nobject = \"post\""),

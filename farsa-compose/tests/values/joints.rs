@@ -76,6 +76,7 @@ fn fallen(steps: usize) -> [f64; 2] {
 
 /// The glider after a number of steps.
 pub(crate) struct Fall {
+    number: usize,
     speed: Vector,
     way: Vector,
     last_way: Vector,
@@ -85,7 +86,12 @@ impl Fall {
     fn new(steps: usize) -> Self {
         let [speed, way] = fallen(steps);
         let before = fallen(steps.saturating_sub(1))[1];
-        Self { speed: times(speed, GRAVITY), way: times(way, GRAVITY), last_way: times(way - before, GRAVITY) }
+        Self {
+            number: steps,
+            speed: times(speed, GRAVITY),
+            way: times(way, GRAVITY),
+            last_way: times(way - before, GRAVITY),
+        }
     }
 
     fn limb(&self) -> Vector {
@@ -106,7 +112,7 @@ fn along(vector: Vector) -> f64 {
     dot(vector, [0.3, -0.9, 0.5]) / f64::sqrt(0.09 + 0.81 + 0.25)
 }
 
-fn file(sensors: &str, terms: &str) -> String {
+pub(crate) fn file(sensors: &str, terms: &str) -> String {
     format!(
         "world = {{ engine = \"articulated\", floor = false, time_step = {TIME_STEP}, substeps = 5, gravity = {GRAVITY:?} }}\n\
          robot = {{ kind = \"model\", file = \"glider.urdf\", floating = true }}\n\
@@ -121,7 +127,7 @@ fn file(sensors: &str, terms: &str) -> String {
     )
 }
 
-const NOTHING: &str = "[[sensors]]\nkind = \"constant\"\nvalue = 0.3\n";
+pub(crate) const NOTHING: &str = "[[sensors]]\nkind = \"constant\"\nvalue = 0.3\n";
 
 type Case = (&'static str, &'static str, fn(&Fall) -> f64);
 
@@ -153,6 +159,17 @@ pub(crate) const TERMS: &[Case] = &[
     ("effort", "", |_| 0.25),
     ("control", "", |_| 0.0),
     ("steps", "", |_| 1.0),
+    ("step", "", |fall| fall.number as f64),
+    ("time", "", |fall| TIME_STEP * fall.number as f64),
+    ("joint-position", "joint = \"hinge\"", |_| BEND),
+    ("joint-position", "joint = \"rail\"", |_| 0.25),
+    ("joint-velocity", "joint = \"rail\"", |_| 0.0),
+    ("contact", "object = \"ball\"", |_| 0.0),
+    ("height", "body = \"ball\"", |fall| BALL[2] + fall.way[2]),
+    ("height", "body = \"mark\"", |_| MARK[2]),
+    ("position", "along = [0.3, -0.9, 0.5]\nbody = \"ball\"", |fall| along(add(BALL, fall.way))),
+    ("speed", "body = \"ball\"", |fall| length(fall.speed)),
+    ("formula", "formula = \"2 * height(ball) / 1 m\"", |fall| 2.0 * (BALL[2] + fall.way[2])),
     ("touch", "", |_| 0.0),
 ];
 

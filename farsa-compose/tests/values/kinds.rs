@@ -35,10 +35,12 @@ const OF_TEAMS: [&str; 10] = [
 const ALL: &str = "eye = { columns = 1, rows = 1, field_of_view = 60, range = 1 }\n";
 
 /// Kinds without a value for wheels, and for joints, with the keys that they need. They are refused there.
-const NOT_ON_WHEELS: [(&str, &str, &str); 10] = [
+const NOT_ON_WHEELS: [(&str, &str, &str); 12] = [
     ("reward", "height", ""),
     ("reward", "upright", ""),
     ("reward", "joint-speed", ""),
+    ("reward", "joint-position", "joint = \"hinge\"\n"),
+    ("reward", "joint-velocity", "joint = \"hinge\"\n"),
     ("sensors", "camera-image", ALL),
     ("sensors", "color-blobs", "colors = []\n"),
     ("sensors", "visual-offset", "of = \"lamp\"\nfrom = \"lamp\"\n"),
@@ -47,13 +49,14 @@ const NOT_ON_WHEELS: [(&str, &str, &str); 10] = [
     ("motors", "servo", ""),
     ("motors", "muscles", ""),
 ];
-const NOT_OF_JOINTS: [(&str, &str, &str); 37] = [
+const NOT_OF_JOINTS: [(&str, &str, &str); 36] = [
     ("reward", "angle", "object = \"lamp\"\n"),
     ("reward", "wheel-speed", ""),
     ("reward", "wheel-difference", ""),
     ("reward", "straight-on", ""),
     ("reward", "in-area", "area = \"lamp\"\n"),
     ("reward", "fullest-area", "area = \"lamp\"\n"),
+    ("reward", "robots-in-area", "area = \"lamp\"\n"),
     ("reward", "dispersion", ""),
     ("reward", "clusters", ""),
     ("reward", "largest-cluster", ""),
@@ -66,9 +69,7 @@ const NOT_OF_JOINTS: [(&str, &str, &str); 37] = [
     ("reward", "energy", ""),
     ("reward", "alive", ""),
     ("reward", "held", ""),
-    ("reward", "time", ""),
     ("reward", "gap", "object = \"lamp\"\n"),
-    ("reward", "contact", "object = \"lamp\"\n"),
     ("reward", "time-left", "rest = \"robot\"\n"),
     ("sensors", "infrared", ""),
     ("sensors", "light", ""),

@@ -10,6 +10,7 @@
 mod blocks;
 mod drives;
 mod exports;
+mod formulas;
 mod joints;
 mod kinds;
 mod recordings;
