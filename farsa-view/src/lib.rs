@@ -8,6 +8,6 @@ mod recording;
 pub mod shape;
 
 pub use error::Error;
-pub use page::{LivePage, Page, readable};
+pub use page::{LabPage, LivePage, Page, readable};
 pub use picture::{Beam, Camera, Picture, Push};
 pub use recording::{CastRay, Channel, ImageChannel, Links, NodeParameters, Recording, Schema, Table, Touching, View};

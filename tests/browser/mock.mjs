@@ -9,6 +9,7 @@ const VIEWER = new URL("../../farsa-view/src/page/viewer/", import.meta.url);
 // In the order in which the page has them.
 export const SCRIPTS = ["data.js", "camera.js", "scene.js", "view.js", "strips.js", "images.js", "network.js", "film.js", "player.js", "main.js"];
 export const viewer = (name) => readFileSync(new URL(name, VIEWER), "utf8");
+export const STYLE = viewer("palette.css") + viewer("viewer.css");
 
 export const crc = (bytes) => {
   if (crc32) return crc32(bytes);
@@ -27,7 +28,7 @@ export const lean = (source) => source.split("\n").map((line) => line.trimStart(
 export function compose(data) {
   const json = JSON.stringify(data).replaceAll("<", "\\u003c");
   const title = data.title.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
-  const parts = { policy: "", title, style: lean(viewer("viewer.css")), script: lean(SCRIPTS.map(viewer).join("\n")), data: json };
+  const parts = { policy: "", title, style: lean(STYLE), script: lean(SCRIPTS.map(viewer).join("\n")), data: json };
   return viewer("page.html").replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
 }
 

@@ -15,7 +15,7 @@ import { join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { pathToFileURL } from "node:url";
 import { elsewhere } from "./elsewhere.mjs";
-import { armTrial, arenaTrial, CELLS, compose, csvOf, encode, eyePixel, foragingTrial, lean, pageOf, SCRIPTS, viewer } from "./mock.mjs";
+import { armTrial, arenaTrial, CELLS, compose, csvOf, encode, eyePixel, foragingTrial, lean, pageOf, SCRIPTS, STYLE, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
 import { newcomers, phoned } from "./newcomers.mjs";
 import { isFirefox, KEY, startDriver } from "./webdriver.mjs";
@@ -94,12 +94,12 @@ async function silent(browser, name) {
 
 function files() {
   const template = viewer("page.html");
-  const size = [template, ...[viewer("viewer.css"), ...SCRIPTS.map(viewer)].map(lean)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
+  const size = [template, ...[STYLE, ...SCRIPTS.map(viewer)].map(lean)].reduce((sum, text) => sum + Buffer.byteLength(text), 0);
   check(`the viewer has ${size} bytes, at most 98304`, size <= 98304);
   for (const name of ["title", "style", "script", "data"]) {
     check(`page.html has one {{${name}}}`, template.split(`{{${name}}}`).length === 2);
   }
-  const rest = [viewer("viewer.css"), ...SCRIPTS.map(viewer)].join("");
+  const rest = [STYLE, ...SCRIPTS.map(viewer)].join("");
   check("style and scripts can stand in a page", !/<\/(script|style)|<!--|\{\{/.test(rest));
   check("nothing is asked of a network", !/https?:|\bfetch\(|XMLHttpRequest|import\(|@import|url\(/.test(template + rest));
 }

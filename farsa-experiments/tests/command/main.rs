@@ -15,6 +15,8 @@ mod genotypes;
 mod guide;
 mod individuals;
 mod keyframes;
+mod lab;
+mod lab_refusals;
 mod learning;
 mod lines;
 mod live;

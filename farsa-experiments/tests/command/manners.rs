@@ -4,7 +4,8 @@ use std::fs;
 
 use crate::tool::{Running, Said, command, content, farsa, ok, own, say, scratch};
 
-const SUBCOMMANDS: [&str; 19] = [
+const SUBCOMMANDS: [&str; 20] = [
+    "lab",
     "strategies",
     "list",
     "info",

@@ -200,6 +200,7 @@ impl<'e> Invocation<'e, '_> {
             Command::Replay(args) => self.replay(&args),
             Command::Live(args) => self.live(&args),
             Command::Serve(args) => self.serve(&args),
+            Command::Lab(args) => self.lab(&args),
             Command::Draw(args) => {
                 let (directory, plan) = self.existing(&args.directory)?;
                 if let Some(wish) = args.sheet()? {

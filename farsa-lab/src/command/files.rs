@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::PathBuf;
 
 use crate::command::arguments::files::{CheckArgs, NewArgs};
@@ -12,7 +12,7 @@ use crate::command::invocation::Invocation;
 use crate::error::Error;
 use crate::escaped::{Quoted, escaped};
 use crate::json::pretty;
-use crate::run::laboratory::{FILE, Template};
+use crate::run::laboratory::{FILE, MAX_BYTES, Template};
 use crate::store::own_output::write_outputs;
 use crate::store::replace::create_results;
 
@@ -83,11 +83,19 @@ impl Invocation<'_, '_> {
 
     /// Checks an experiment, and lists or draws its connections.
     pub(super) fn check(&self, args: &CheckArgs) -> Result<(), Error> {
-        let plan = args.variant.plan(self.laboratory.experiment(&args.experiment, "")?)?;
+        let experiment = if args.stdin {
+            self.laboratory.experiment_of_text(&args.experiment, &standard_input()?)?
+        } else {
+            self.laboratory.experiment(&args.experiment, "")?
+        };
+        let plan = args.variant.plan(experiment)?;
         plan.strategy()?;
         let connections = Connections::new(&plan)?;
         self.warn(&connections.warnings);
         if let Some(path) = &args.graph {
+            if path.as_os_str() == "-" {
+                return say(&connections.svg());
+            }
             write_outputs(&[(path.clone(), connections.svg())])?;
         }
         match (args.json, self.quiet) {
@@ -96,6 +104,17 @@ impl Invocation<'_, '_> {
             (false, false) => tell(&connections.text()),
         }
     }
+}
+
+/// Reads the text of an experiment file from standard input.
+fn standard_input() -> Result<String, Error> {
+    let mut bytes = Vec::new();
+    let read = io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(Error::io("read", "standard input".as_ref()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(Error::Usage(format!("standard input has more than {MAX_BYTES} bytes")));
+    }
+    String::from_utf8(bytes).map_err(|_| Error::Usage("standard input is no text (UTF-8)".into()))
 }
 
 /// Formats the templates, one per line.

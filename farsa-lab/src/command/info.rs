@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::experiment::PartNames;
 use crate::experiment::outcome::{ChannelGroup, Description};
 use crate::experiment::protocol::Protocol;
-use crate::experiment::settings::{Setting, Source, Value};
+use crate::experiment::settings::{AllowedValues, Setting, Source, Value};
 use crate::figures::significant::counted;
 use crate::json::pretty;
 use crate::run::experiment::Experiment;
@@ -108,6 +108,8 @@ pub(super) struct SettingInfo {
     default: serde_json::Value,
     unit: String,
     allowed: String,
+    #[serde(flatten)]
+    values: AllowedValues,
     source: Source,
     doc: String,
 }
@@ -119,6 +121,7 @@ impl SettingInfo {
             default: json(setting.default_value()),
             unit: setting.unit_name().into(),
             allowed: setting.allowed(),
+            values: setting.allowed_values(),
             source: setting.source(),
             doc: setting.doc_text().into(),
         }

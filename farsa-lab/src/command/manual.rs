@@ -41,7 +41,7 @@ pub(crate) fn command(program: &str, laboratory: &Laboratory<'_>) -> Command {
         format!("{}\n{}", if lines.len() == 1 { "Example:" } else { "Examples:" }, lines.join("\n"))
     };
     let tour = [format!("run {experiment} --generations 20"), format!("replay {run} --html trial.html")];
-    let tour = examples(&tour).replacen("Examples:", "A first tour:", 1);
+    let tour = examples(&tour).replacen("Examples:\n", "A first tour:", 1);
     let mut command = arguments(program)
         .name(program.to_owned())
         .bin_name(program.to_owned())
@@ -131,6 +131,7 @@ fn subcommand_examples(program: &str, experiment: &str, run: &str, other: &str) 
             "live",
             vec![format!("live {run} --html live.html"), format!("live {run} --generations 0,10,19 --html live.html")],
         ),
+        ("lab", vec!["lab".into(), "lab study --read-only".into()]),
         ("serve", vec![format!("serve {run}"), format!("serve {run} --port 0")]),
         (
             "draw",

@@ -24,6 +24,8 @@ mod info;
 mod interrupt;
 /// Name, experiments and ranks of a call of the command.
 mod invocation;
+/// `farsa lab`.
+mod lab;
 /// `farsa live` and `farsa serve`.
 mod live;
 /// Help with examples, completions and manual pages.

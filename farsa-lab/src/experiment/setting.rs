@@ -45,6 +45,19 @@ enum Allowed {
     Numbers(RangeInclusive<f64>),
 }
 
+/// Allowed values of a setting, for forms of other programs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct AllowedValues {
+    /// Kind of the values: `flag`, `whole`, `number`, `word`, `text` or `numbers`.
+    kind: &'static str,
+    /// Least and largest number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    range: Option<[f64; 2]>,
+    /// Possible words.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    choices: Vec<String>,
+}
+
 /// A single setting, with its default, the origin of this default, and all values it may have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
@@ -188,6 +201,19 @@ impl Setting {
                 format!("{} numbers, each {:?} to {:?}", self.length(), range.start(), range.end())
             }
         }
+    }
+
+    /// Describes all allowed values with their kind and range.
+    pub(crate) fn allowed_values(&self) -> AllowedValues {
+        let (kind, range, choices) = match &self.allowed {
+            Allowed::Flag => ("flag", None, Vec::new()),
+            Allowed::Whole(range) => ("whole", Some([*range.start() as f64, *range.end() as f64]), Vec::new()),
+            Allowed::Number(range) => ("number", Some([*range.start(), *range.end()]), Vec::new()),
+            Allowed::Word(choices) => ("word", None, choices.clone()),
+            Allowed::Text => ("text", None, Vec::new()),
+            Allowed::Numbers(range) => ("numbers", Some([*range.start(), *range.end()]), Vec::new()),
+        };
+        AllowedValues { kind, range, choices }
     }
 
     /// Checks if this is the only allowed number.

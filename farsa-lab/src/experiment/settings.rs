@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::error::Error;
 
+pub(crate) use crate::experiment::setting::AllowedValues;
 pub use crate::experiment::setting::{Setting, Source};
 pub(crate) use crate::experiment::value::Paragraph;
 pub use crate::experiment::value::Value;

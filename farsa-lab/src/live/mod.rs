@@ -11,6 +11,15 @@ mod digest;
 mod disturbances;
 /// A search continued in memory, shared by sessions.
 mod evolution;
+/// Servers for browsers on this machine.
+#[cfg(feature = "command")]
+mod http;
+/// `farsa lab`: a laboratory in the browser.
+#[cfg(feature = "command")]
+pub(crate) mod lab;
+/// Log of fitness, read in parts while it grows.
+#[cfg(feature = "command")]
+mod log_tail;
 /// `farsa live`: an interactive page that runs an agent.
 #[cfg(feature = "command")]
 pub(crate) mod page;
@@ -21,6 +30,9 @@ mod request;
 /// Fitness of a generation.
 #[cfg(feature = "command")]
 mod row;
+/// Marks by which a run is recognized.
+#[cfg(feature = "command")]
+mod run_mark;
 /// State of a search, from which it continues.
 mod run_state;
 /// `farsa serve`: the page of a running run.

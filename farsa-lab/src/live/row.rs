@@ -14,4 +14,9 @@ impl Row {
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
         Self(generation, finite(best), finite(mean))
     }
+
+    /// Gets the best fitness.
+    pub(crate) fn best(&self) -> Option<f64> {
+        self.1
+    }
 }

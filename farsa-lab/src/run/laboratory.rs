@@ -196,6 +196,14 @@ impl<'e> Laboratory<'e> {
         })
     }
 
+    /// Returns the experiment of a text in place of the file of this name.
+    ///
+    /// # Errors
+    /// The errors of the text.
+    pub(crate) fn experiment_of_text(&self, name: &str, text: &str) -> Result<&'e dyn Experiment, Error> {
+        self.described(name, text, Path::new(name).parent())
+    }
+
     /// Returns the file of a name: the name itself, or NAME.toml if this is a file and no built-in experiment has the name.
     pub(crate) fn file(&self, name: &str) -> Option<String> {
         if is_file(name) {

@@ -16,6 +16,10 @@ const TEST_LOCK: &str = ".test.lock";
 const ATTEMPTS: usize = 200;
 const PAUSE: Duration = Duration::from_millis(50);
 
+/// Number of tries for the lock of a run, and the pause between them. [`is_held`] takes a shared lock for some microseconds.
+const RUN_ATTEMPTS: usize = 4;
+const RUN_PAUSE: Duration = Duration::from_millis(3);
+
 /// A lock that is held until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Lock {
@@ -39,11 +43,15 @@ impl Lock {
     pub(crate) fn of_free_run(directory: &Path) -> Result<Option<Self>, Error> {
         let path = directory.join(RUN_LOCK);
         let file = open(&path).map_err(Error::io("lock", &path))?;
-        match file.try_lock() {
-            Ok(()) => Ok(Some(Self { _file: file })),
-            Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(source)) => Err(Error::Io { doing: "lock", path, source }),
+        for attempt in 0..RUN_ATTEMPTS {
+            match file.try_lock() {
+                Ok(()) => return Ok(Some(Self { _file: file })),
+                Err(TryLockError::WouldBlock) if attempt + 1 < RUN_ATTEMPTS => thread::sleep(RUN_PAUSE),
+                Err(TryLockError::WouldBlock) => break,
+                Err(TryLockError::Error(source)) => return Err(Error::Io { doing: "lock", path, source }),
+            }
         }
+        Ok(None)
     }
 
     /// Waits for the lock of a run's tests.
@@ -64,6 +72,13 @@ impl Lock {
     }
 }
 
+/// Checks if a process has locked a file, which is only read. A missing file is not locked.
+pub(crate) fn is_held(path: &Path) -> bool {
+    let is_file = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file());
+    let file = if is_file { File::open(path).ok() } else { None };
+    file.is_some_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
 /// Opens or creates a file for a lock. Nothing is written, and links and pipes are refused.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
     match OpenOptions::new().write(true).create_new(true).open(path) {
@@ -74,5 +89,29 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
             OpenOptions::new().write(true).open(path)
         }
         opened => opened,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_held_lock_is_seen_and_a_look_at_it_delays_no_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(RUN_LOCK);
+        assert!(!is_held(&path) && !path.exists());
+        let lock = Lock::of_run(folder.path()).unwrap();
+        assert!(is_held(&path) && Lock::of_free_run(folder.path()).unwrap().is_none());
+        drop(lock);
+        assert!(!is_held(&path));
+        let shared = File::open(&path).unwrap();
+        shared.try_lock_shared().unwrap();
+        let end = thread::spawn(move || {
+            thread::sleep(RUN_PAUSE);
+            drop(shared);
+        });
+        Lock::of_run(folder.path()).unwrap();
+        end.join().unwrap();
     }
 }

@@ -9,7 +9,7 @@ use crate::recording::memory::Recording;
 use crate::recording::view::View;
 
 const TEMPLATE: &str = include_str!("viewer/page.html");
-const STYLE: &str = include_str!("viewer/viewer.css");
+const STYLE: &str = concat!(include_str!("viewer/palette.css"), include_str!("viewer/viewer.css"));
 const SCRIPTS: &[&str] = &[
     include_str!("viewer/data.js"),
     include_str!("viewer/camera.js"),

@@ -6,8 +6,11 @@ mod blocks;
 mod episode_data;
 /// Recorded episodes as one HTML file.
 pub(crate) mod html;
+/// The page of `farsa lab`.
+mod lab;
 /// An interactive page that runs an agent.
 mod live;
 
 pub use html::{Page, readable};
+pub use lab::LabPage;
 pub use live::LivePage;

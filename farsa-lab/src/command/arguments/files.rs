@@ -12,10 +12,10 @@ pub(crate) struct NewArgs {
     /// The name of the experiment, written to NAME.toml
     #[arg(required_unless_present = "from")]
     pub(crate) name: Option<String>,
-    /// The template, or `list` for the names of all [default: the first]
+    /// The template, or `list` [default: the first]
     #[arg(long, value_name = "TEMPLATE")]
     pub(crate) from: Option<String>,
-    /// Write a crate with custom parts
+    /// Write a crate with parts
     #[arg(long, conflicts_with = "from")]
     pub(crate) parts: bool,
 }
@@ -27,9 +27,12 @@ pub(crate) struct CheckArgs {
     pub(crate) experiment: String,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
-    /// Draw the connections into an SVG file
+    /// Draw the connections into an SVG file, or `-` for standard output
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) graph: Option<PathBuf>,
+    /// Read the text of the file from standard input, as a page that edits it does
+    #[arg(long, hide = true)]
+    pub(crate) stdin: bool,
     /// Write JSON
     #[arg(long)]
     pub(crate) json: bool,

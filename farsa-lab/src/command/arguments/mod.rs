@@ -6,6 +6,8 @@ pub(crate) mod export;
 pub(crate) mod files;
 /// `farsa evaluate` and `farsa import`.
 pub(crate) mod genotypes;
+/// `farsa lab`.
+pub(crate) mod lab;
 /// `farsa merge`.
 pub(crate) mod merge;
 /// `farsa robot`.

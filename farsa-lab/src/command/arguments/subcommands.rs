@@ -9,6 +9,7 @@ use farsa_view::Camera;
 use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::files::{CheckArgs, NewArgs};
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
+use crate::command::arguments::lab::LabArgs;
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs, whole};
@@ -65,6 +66,8 @@ pub(crate) enum Command {
     Live(LiveArgs),
     /// Serve the interactive page of a running run on this machine
     Serve(ServeArgs),
+    /// Open a laboratory in the browser, to begin with
+    Lab(LabArgs),
     /// Draw a moment of a trial as a picture
     Draw(DrawArgs),
     /// Write a report about one or several runs

@@ -5,14 +5,12 @@ use std::task::{Context, Poll, ready};
 use std::time::Duration;
 
 use hyper::body::Bytes;
-use serde::Serialize;
 use tokio::time::{Interval, MissedTickBehavior, interval};
 
-use crate::error::Error;
-use crate::live::serve::log_tail::{LogTail, Part};
-use crate::live::serve::run_mark::RunMark;
+use crate::live::http::answer::{self, event};
+use crate::live::log_tail::{LogTail, Part};
+use crate::live::run_mark::RunMark;
 use crate::live::serve::state::{Listener, NamedRun};
-use crate::live::session::json;
 
 /// Interval at which the files of a run are checked.
 pub(super) const INTERVAL: Duration = Duration::from_millis(500);
@@ -43,30 +41,6 @@ impl Events {
         let mut ticks = interval(INTERVAL);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         Self { listener, run, tail, champions: 0, ticks, silent: 0, ended: false }
-    }
-
-    /// Returns the next event, or `None` at the end of the stream.
-    pub(super) fn poll(&mut self, context: &mut Context<'_>) -> Poll<Option<Bytes>> {
-        loop {
-            if self.ended {
-                return Poll::Ready(None);
-            }
-            let (event, more) = self.next();
-            if event.is_some() {
-                self.silent = 0;
-                return Poll::Ready(event);
-            }
-            if more {
-                context.waker().wake_by_ref();
-                return Poll::Pending;
-            }
-            ready!(self.ticks.poll_tick(context));
-            self.silent += 1;
-            if self.silent == KEEP_ALIVE {
-                self.silent = 0;
-                return Poll::Ready(Some(Bytes::from_static(b":\n\n")));
-            }
-        }
     }
 
     /// Returns an event that is due, and true if more of the log can be read at once.
@@ -120,13 +94,29 @@ impl Events {
     }
 }
 
-/// Formats an event of a stream. After a lost connection a browser sends the number of the last event.
-///
-/// # Errors
-/// [`Error::Other`] for data that has no JSON.
-pub(super) fn event(name: &str, number: Option<usize>, data: &impl Serialize) -> Result<Bytes, Error> {
-    let number = number.map_or_else(String::new, |number| format!("id: {number}\n"));
-    Ok(format!("event: {name}\n{number}data: {}\n\n", json(data)?).into())
+impl answer::Events for Events {
+    fn poll(&mut self, context: &mut Context<'_>) -> Poll<Option<Bytes>> {
+        loop {
+            if self.ended {
+                return Poll::Ready(None);
+            }
+            let (event, more) = self.next();
+            if event.is_some() {
+                self.silent = 0;
+                return Poll::Ready(event);
+            }
+            if more {
+                context.waker().wake_by_ref();
+                return Poll::Pending;
+            }
+            ready!(self.ticks.poll_tick(context));
+            self.silent += 1;
+            if self.silent == KEEP_ALIVE {
+                self.silent = 0;
+                return Poll::Ready(Some(Bytes::from_static(b":\n\n")));
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -135,6 +125,7 @@ mod tests {
     use std::fs;
     use std::future::poll_fn;
 
+    use crate::live::http::answer::Events as _;
     use crate::live::serve::state::Shared;
     use crate::store::directory::Directory;
 

@@ -1,6 +1,6 @@
 //! `farsa serve`: the page of a running run, for a browser on this machine.
 //!
-//! One thread owns all connections ([`http`]). The thread of the caller builds pages and reads champions ([`publisher`]). Both
+//! One thread owns all connections ([`http`](crate::live::http)). The thread of the caller builds pages and reads champions ([`publisher`]). Both
 //! share the [`state`] of the directory. No thread is started after the first request.
 
 use std::net::{Ipv4Addr, TcpListener};
@@ -8,27 +8,17 @@ use std::sync::{Arc, mpsc};
 use std::thread;
 
 use crate::error::Error;
-use crate::live::serve::http::Server;
+use crate::live::http::server::Server;
 use crate::live::serve::publisher::Publisher;
 use crate::live::serve::site::Site;
 use crate::live::serve::state::Shared;
 
 pub(crate) use publisher::Served;
 
-/// Body of an answer.
-mod answer;
-/// Open connections and their limits.
-mod connections;
 /// Event stream of a listener.
 mod events;
-/// Listener and runtime.
-mod http;
-/// Log of fitness, read in parts while it grows.
-mod log_tail;
 /// Pages and champions.
 mod publisher;
-/// Marks by which a run is recognized.
-mod run_mark;
 /// Addresses of the server.
 mod site;
 /// State that both threads share.

@@ -7,9 +7,10 @@ use hyper::body::Bytes;
 
 use crate::error::Error;
 use crate::live::champion::champions;
+use crate::live::http::answer::event;
 use crate::live::page::{self, Use};
-use crate::live::serve::events::{INTERVAL, event};
-use crate::live::serve::run_mark::{FileMark, RunMark};
+use crate::live::run_mark::{FileMark, RunMark};
+use crate::live::serve::events::INTERVAL;
 use crate::live::serve::state::{NamedRun, Question, Shared, Unavailable};
 use crate::run::catch_panic::catch_printed_panic;
 use crate::run::config_file::ConfigFile;

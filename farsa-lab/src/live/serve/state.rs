@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use hyper::body::Bytes;
 use tokio::sync::oneshot;
 
-use crate::live::serve::run_mark::RunMark;
+use crate::live::run_mark::RunMark;
 use crate::store::directory::Directory;
 
 /// The run in the directory, and its champions.

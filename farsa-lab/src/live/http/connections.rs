@@ -24,7 +24,7 @@ enum Phase {
 
 /// Phase of a connection and its last progress.
 #[derive(Debug)]
-pub(super) struct Activity(Mutex<(Phase, Instant)>);
+pub(in crate::live) struct Activity(Mutex<(Phase, Instant)>);
 
 impl Activity {
     fn new() -> Self {
@@ -40,22 +40,22 @@ impl Activity {
     }
 
     /// Notes that the request was received.
-    pub(super) fn waits(&self) {
+    pub(in crate::live) fn waits(&self) {
         self.set(Phase::Waiting);
     }
 
     /// Notes that an answer is sent.
-    pub(super) fn sends(&self) {
+    pub(in crate::live) fn sends(&self) {
         self.set(Phase::Sending);
     }
 
     /// Notes that events are sent.
-    pub(super) fn streams(&self) {
+    pub(in crate::live) fn streams(&self) {
         self.set(Phase::Streaming);
     }
 
     /// Notes that the client has read a part of the answer.
-    pub(super) fn touch(&self) {
+    pub(in crate::live) fn touch(&self) {
         self.set(self.get().0);
     }
 
@@ -67,19 +67,19 @@ impl Activity {
 
 /// Tasks of all connections, by their age.
 #[derive(Debug)]
-pub(super) struct Connections {
+pub(in crate::live) struct Connections {
     most: usize,
     next: u64,
     open: BTreeMap<u64, (Arc<Activity>, JoinHandle<()>)>,
 }
 
 impl Connections {
-    pub(super) fn new(most: usize) -> Self {
+    pub(in crate::live) fn new(most: usize) -> Self {
         Self { most, next: 0, open: BTreeMap::new() }
     }
 
     /// Closes connections that make no progress, and returns true if another one can be opened.
-    pub(super) fn sweep(&mut self, now: Instant) -> bool {
+    pub(in crate::live) fn sweep(&mut self, now: Instant) -> bool {
         self.open.retain(|_, (activity, task)| {
             if activity.is_stalled(now) {
                 task.abort();
@@ -92,7 +92,7 @@ impl Connections {
     /// Closes the oldest connection of the first phase that any of them is in. Event streams stay open.
     ///
     /// Its resources are free when the task has been scheduled once.
-    pub(super) fn close_oldest(&mut self) {
+    pub(in crate::live) fn close_oldest(&mut self) {
         let closable = self.open.iter().map(|(number, (activity, _))| (activity.get().0, *number));
         if let Some((_, number)) = closable.filter(|(phase, _)| *phase != Phase::Streaming).min() {
             self.open.remove(&number).inspect(|(_, task)| task.abort());
@@ -100,7 +100,7 @@ impl Connections {
     }
 
     /// Adds a connection, whose task is started by `spawn`.
-    pub(super) fn open(&mut self, spawn: impl FnOnce(Arc<Activity>) -> JoinHandle<()>) {
+    pub(in crate::live) fn open(&mut self, spawn: impl FnOnce(Arc<Activity>) -> JoinHandle<()>) {
         let activity = Arc::new(Activity::new());
         let task = spawn(activity.clone());
         self.open.insert(self.next, (activity, task));

@@ -12,7 +12,7 @@ const PART: u64 = 64 << 10;
 
 /// Reader of a log. It holds no file open, and its memory does not depend on the length of the log.
 #[derive(Debug, Clone)]
-pub(super) struct LogTail {
+pub(in crate::live) struct LogTail {
     path: PathBuf,
     /// Byte after the last line that was read.
     offset: u64,
@@ -26,7 +26,7 @@ pub(super) struct LogTail {
 
 /// Result of a read.
 #[derive(Debug, PartialEq)]
-pub(super) enum Part {
+pub(in crate::live) enum Part {
     /// New rows, and true if more lines can be read at once.
     Rows(Vec<Row>, bool),
     /// The previous line is no longer there: this is another log.
@@ -35,7 +35,7 @@ pub(super) enum Part {
 
 impl LogTail {
     /// Starts before the header, and skips rows of generations before `first`.
-    pub(super) fn new(path: PathBuf, first: usize) -> Self {
+    pub(in crate::live) fn new(path: PathBuf, first: usize) -> Self {
         Self { path, offset: 0, last: Vec::new(), next: None, first }
     }
 
@@ -45,7 +45,7 @@ impl LogTail {
     ///
     /// # Errors
     /// [`Error::Io`], and [`Error::File`] for an invalid log.
-    pub(super) fn read(&mut self) -> Result<Part, Error> {
+    pub(in crate::live) fn read(&mut self) -> Result<Part, Error> {
         let size = fs::metadata(&self.path).map_err(Error::io("read", &self.path))?.len();
         if size <= self.offset {
             return Ok(Part::Rows(Vec::new(), false));

@@ -1,21 +1,30 @@
 //! Body of an answer: a text in parts, or events.
 
 use std::convert::Infallible;
+use std::fmt::Debug;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use hyper::body::{Body, Bytes, Frame, SizeHint};
+use serde::Serialize;
 
-use crate::live::serve::connections::Activity;
-use crate::live::serve::events::Events;
+use crate::error::Error;
+use crate::live::http::connections::Activity;
+use crate::live::session::json;
 
 /// Bytes of a part of a text. A client is slow if it does not read one in the time of a connection.
 const PART: usize = 64 << 10;
 
+/// Events of an answer that stays open.
+pub(in crate::live) trait Events: Debug + Send + 'static {
+    /// Returns the next event, or `None` at the end of the stream.
+    fn poll(&mut self, context: &mut Context<'_>) -> Poll<Option<Bytes>>;
+}
+
 /// Body whose progress is noted for the limits of its connection.
 #[derive(Debug)]
-pub(super) struct Answer {
+pub(in crate::live) struct Answer {
     content: Content,
     activity: Arc<Activity>,
 }
@@ -23,16 +32,16 @@ pub(super) struct Answer {
 #[derive(Debug)]
 enum Content {
     Text(Bytes),
-    Events(Box<Events>),
+    Events(Box<dyn Events>),
 }
 
 impl Answer {
-    pub(super) fn text(text: Bytes, activity: Arc<Activity>) -> Self {
+    pub(in crate::live) fn text(text: Bytes, activity: Arc<Activity>) -> Self {
         activity.sends();
         Self { content: Content::Text(text), activity }
     }
 
-    pub(super) fn events(events: Events, activity: Arc<Activity>) -> Self {
+    pub(in crate::live) fn events(events: impl Events, activity: Arc<Activity>) -> Self {
         activity.streams();
         Self { content: Content::Events(Box::new(events)), activity }
     }
@@ -66,4 +75,13 @@ impl Body for Answer {
             Content::Events(_) => SizeHint::default(),
         }
     }
+}
+
+/// Formats an event of a stream. After a lost connection a browser sends the number of the last event.
+///
+/// # Errors
+/// [`Error::Other`] for data that has no JSON.
+pub(in crate::live) fn event(name: &str, number: Option<usize>, data: &impl Serialize) -> Result<Bytes, Error> {
+    let number = number.map_or_else(String::new, |number| format!("id: {number}\n"));
+    Ok(format!("event: {name}\n{number}data: {}\n\n", json(data)?).into())
 }

@@ -1,20 +1,24 @@
 //! Listener and runtime of the server.
 
+use std::convert::Infallible;
+use std::future::Future;
 use std::io;
 use std::net::TcpListener;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
+use hyper::{Request, Response};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::net::TcpStream;
 use tokio::runtime::{Builder, Runtime};
 use tokio::task::JoinHandle;
 use tokio::time::{sleep, timeout};
 
-use crate::live::serve::connections::{Activity, Connections};
-use crate::live::serve::site::Site;
+use crate::live::http::answer::Answer;
+use crate::live::http::connections::{Activity, Connections};
 
 /// Most connections, where the limit on open files allows them.
 const MOST: usize = 256;
@@ -30,16 +34,29 @@ const SWEEP: Duration = Duration::from_secs(1);
 /// Pause after the system has refused a connection, as when no file can be opened.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// A listener with the runtime of its connections, on one thread.
-pub(super) struct Server {
-    runtime: Runtime,
-    listener: tokio::net::TcpListener,
-    site: Site,
+/// Addresses that a server answers.
+pub(in crate::live) trait Service: Clone + Send + 'static {
+    /// Sets the most open connections.
+    fn limit(&mut self, connections: usize);
+
+    /// Answers a request.
+    fn answer(
+        self,
+        request: Request<Incoming>,
+        activity: Arc<Activity>,
+    ) -> impl Future<Output = Result<Response<Answer>, Infallible>> + Send;
 }
 
-impl Server {
+/// A listener with the runtime of its connections, on one thread.
+pub(in crate::live) struct Server<S> {
+    runtime: Runtime,
+    listener: tokio::net::TcpListener,
+    site: S,
+}
+
+impl<S: Service> Server<S> {
     /// Prepares the server. Connections are opened by [`run`](Self::run).
-    pub(super) fn new(listener: TcpListener, site: Site) -> io::Result<Self> {
+    pub(in crate::live) fn new(listener: TcpListener, site: S) -> io::Result<Self> {
         listener.set_nonblocking(true)?;
         let runtime = Builder::new_current_thread().enable_io().enable_time().build()?;
         let listener = runtime.block_on(async { tokio::net::TcpListener::from_std(listener) })?;
@@ -47,16 +64,16 @@ impl Server {
     }
 
     /// Answers requests until the process ends.
-    pub(super) fn run(self) {
+    pub(in crate::live) fn run(self) {
         let Self { runtime, listener, site } = self;
         runtime.block_on(accept(listener, site));
     }
 }
 
 /// Opens connections. If there are too many, the oldest idle one is closed.
-async fn accept(listener: tokio::net::TcpListener, mut site: Site) {
+async fn accept<S: Service>(listener: tokio::net::TcpListener, mut site: S) {
     let most = most_connections(open_files());
-    site.most_listeners = most / 2;
+    site.limit(most);
     let mut connections = Connections::new(most);
     loop {
         let accepted = timeout(SWEEP, listener.accept()).await;
@@ -83,7 +100,7 @@ async fn accept(listener: tokio::net::TcpListener, mut site: Site) {
 }
 
 /// Starts the task of a connection, which answers one request.
-fn spawn(stream: TcpStream, site: Site, activity: Arc<Activity>) -> JoinHandle<()> {
+fn spawn<S: Service>(stream: TcpStream, site: S, activity: Arc<Activity>) -> JoinHandle<()> {
     tokio::spawn(async move {
         // Without it, an event may wait for the confirmation of the previous one.
         let _ = stream.set_nodelay(true);

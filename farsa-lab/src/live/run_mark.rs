@@ -13,7 +13,7 @@ use crate::store::identity::Identity;
 
 /// Version of a file. Replacing the file by another one changes it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct FileMark {
+pub(in crate::live) struct FileMark {
     place: Place,
     size: u64,
     modified: Option<SystemTime>,
@@ -29,7 +29,7 @@ struct Place {
 
 /// Marks of a run's directory and configuration. Generations do not change them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct RunMark {
+pub(in crate::live) struct RunMark {
     directory: Place,
     config: FileMark,
 }
@@ -49,7 +49,7 @@ impl Place {
 
 impl FileMark {
     /// Reads the mark of a file, if it exists.
-    pub(super) fn read(path: &Path) -> Option<Self> {
+    pub(in crate::live) fn read(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok()?;
         Some(Self { place: Place::of(&metadata), size: metadata.len(), modified: metadata.modified().ok() })
     }
@@ -57,7 +57,7 @@ impl FileMark {
 
 impl RunMark {
     /// Reads the marks of a directory, if it holds a run.
-    pub(super) fn read(directory: &Directory) -> Option<Self> {
+    pub(in crate::live) fn read(directory: &Directory) -> Option<Self> {
         let place = Place::of(&fs::metadata(directory.path()).ok()?);
         Some(Self { directory: place, config: FileMark::read(&directory.config())? })
     }
@@ -66,7 +66,7 @@ impl RunMark {
     ///
     /// # Errors
     /// [`Error::Other`] for an identity that has no JSON.
-    pub(super) fn name(&self, identity: &Identity) -> Result<String, Error> {
+    pub(in crate::live) fn name(&self, identity: &Identity) -> Result<String, Error> {
         let mut digest = Digest::new();
         digest.add_bytes(format!("{:?}", self.directory).as_bytes());
         digest.add_bytes(json(identity)?.as_bytes());
