@@ -392,7 +392,7 @@ fn run(name: &str, commands: &str, folder: &Path, place: &Path, builder: Builder
         bash.env("FARSA", program("farsa"));
         for [_, file, ours] in PROGRAMS.into_iter().filter(|[guide, ..]| *guide == name) {
             let variable = file.rsplit('/').next().unwrap_or(file).trim_end_matches(".rs");
-            bash.env(format!("FARSA_{variable}"), program(&format!("examples/{}", ours)));
+            bash.env(format!("FARSA_{variable}"), program(&format!("examples/{ours}")));
         }
     }
     script += commands;
