@@ -57,7 +57,7 @@ function experiments(list) {
     h("div", { class: "head" }, h("h2", { id: "experiments" }, "Experiments"), list.read_only ? null : creation(list)),
     own.length ? h("ul", { class: "tiles" }, own) : h("p", { class: "hint" },
       "This folder has no experiment file yet. Begin with a template: a short text that describes a robot, its world and its task."),
-    h("details", { class: "more", open: !own.length }, h("summary", {}, `${builtIn.length} built-in experiments`), h("ul", { class: "tiles" }, builtIn)));
+    h("details", { class: "more", open: !own.length && !list.runs.length }, h("summary", {}, `${builtIn.length} built-in experiments`), h("ul", { class: "tiles" }, builtIn)));
 }
 
 function creation(list) {
