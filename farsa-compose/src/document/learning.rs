@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Learning {
     /// CSV files in the folder of the experiment's file, as `farsa replay RUN --out FILE` writes them. The columns
-    /// `sensor.NAME` and `output.NAME` are the channels, and each `trial` is a demonstration.
+    /// `sensor.NAME` and `output.NAME` are the channels, and each `trial` is a demonstration. The log counts one as a
+    /// success before an iteration if its root mean squared error of motor values is at most 0.1.
     #[schemars(length(min = 1, max = 16))]
     pub demonstrations: Vec<String>,
     /// Cost of a motor value.

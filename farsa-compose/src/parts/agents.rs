@@ -107,7 +107,7 @@ impl Agents {
     /// Builds the outcome of a trial.
     pub(crate) fn outcome(&self) -> Outcome {
         if self.ledger.failed {
-            return Outcome::failed();
+            return self.ledger.failure();
         }
         let [first, end] = self.evolving;
         let mut observed = self.networks[first..end].iter().filter_map(NormalizedController::observed);

@@ -45,6 +45,8 @@ pub(crate) struct Ledger {
     pub(crate) steps: u32,
     /// Result of the trial.
     pub(crate) failed: bool,
+    /// First term with a value that is not finite, and the value.
+    broken: Option<(usize, f64)>,
     succeeded: bool,
 }
 
@@ -115,13 +117,14 @@ impl Ledger {
             warnings,
             steps: 0,
             failed: false,
+            broken: None,
             succeeded: false,
         })
     }
 
     /// Resets all totals. `arranged` is false if something had no place.
     pub(crate) fn begin(&mut self, arranged: bool) {
-        (self.steps, self.succeeded, self.failed) = (0, false, !arranged);
+        (self.steps, self.succeeded, self.failed, self.broken) = (0, false, !arranged, None);
         self.tallies.iter_mut().for_each(Tally::reset);
         self.conditions().for_each(Wanted::begin);
     }
@@ -152,10 +155,19 @@ impl Ledger {
         self.tallies.iter_mut().for_each(|tally| tally.evolve(robots));
     }
 
+    /// Notes the first value that is not finite.
+    #[cold]
+    fn fail(&mut self, number: usize, value: f64) {
+        self.failed = true;
+        self.broken.get_or_insert((number, value));
+    }
+
     /// Adds the value of a term in a step.
     #[inline]
     pub(crate) fn count(&mut self, number: usize, value: f64) {
-        self.failed |= !value.is_finite();
+        if !value.is_finite() {
+            self.fail(number, value);
+        }
         // A condition names an earlier term only, and terms count in their order.
         let (others, tally) = self.tallies.split_at_mut(number);
         tally[0].count(value, others);
@@ -216,6 +228,15 @@ impl Ledger {
     /// Lists the names of the fitness terms.
     pub(crate) fn names(&self) -> Vec<String> {
         self.paid().map(|tally| tally.label().to_owned()).collect()
+    }
+
+    /// Builds the outcome of a failed trial, which names the term that is not finite.
+    pub(crate) fn failure(&self) -> Outcome {
+        let place = |number| self.paid.iter().position(|paid| *paid == number);
+        let broken = self.broken.and_then(|(number, value)| Some((place(number)?, value)));
+        let Some((place, value)) = broken else { return Outcome::failed() };
+        let terms = (0..self.paid.len()).map(|term| if term == place { value } else { 0.0 });
+        Outcome { terms: terms.collect(), ..Outcome::default() }
     }
 
     /// Builds the outcome of the trial.

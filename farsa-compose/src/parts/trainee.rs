@@ -31,14 +31,18 @@ pub(crate) struct Trainee {
 /// Least and greatest first value of a leak: smaller ones make errors fade within few steps.
 const FIRST_LEAKS: [f32; 2] = [0.2, 1.0];
 
+/// Root mean squared error of motor values up to which a demonstration counts as reproduced.
+const NEAR: f64 = 0.1;
+
 /// A learner of any kind of network.
 trait AnyLearner {
     fn state(&self) -> Vec<f64>;
     fn set_state(&mut self, state: &[f64]) -> Option<()>;
     /// Performs a gradient step.
     fn learn(&mut self, lessons: &[&Lesson]) -> Option<()>;
-    /// Computes the mean squared error of motor values.
-    fn squared_error(&mut self, lessons: &[Lesson]) -> Option<f64>;
+    /// Computes the root mean squared error of motor values, and the share of demonstrations with one of at most
+    /// [`NEAR`].
+    fn errors(&mut self, lessons: &[Lesson]) -> Option<(f64, f64)>;
 }
 
 struct OfKind<M> {
@@ -59,13 +63,14 @@ impl<M: Differentiable> AnyLearner for OfKind<M> {
         self.learner.learn(lessons.iter().map(|lesson| lesson.demonstration())).ok().map(|_| ())
     }
 
-    fn squared_error(&mut self, lessons: &[Lesson]) -> Option<f64> {
-        let (mut sum, mut values) = (0.0, 0);
+    fn errors(&mut self, lessons: &[Lesson]) -> Option<(f64, f64)> {
+        let (mut sum, mut values, mut near) = (0.0, 0, 0_u32);
         for lesson in lessons {
-            sum += self.squares.cost(self.learner.parameters(), lesson.demonstration()).ok()?;
-            values += lesson.values();
+            let squares = self.squares.cost(self.learner.parameters(), lesson.demonstration()).ok()?;
+            near += u32::from(squares <= NEAR * NEAR * lesson.values() as f64);
+            (sum, values) = (sum + squares, values + lesson.values());
         }
-        Some(sum / values.max(1) as f64)
+        Some((Scalar::sqrt(sum / values.max(1) as f64), f64::from(near) / lessons.len().max(1) as f64))
     }
 }
 
@@ -166,7 +171,7 @@ impl LabLearner for Trainee {
     fn iterate(&mut self, state: &mut [f64], seed: u64, generation: u32) -> Option<Iteration> {
         let mut learner = self.learner(seed).ok()?;
         learner.set_state(state)?;
-        let before = Scalar::sqrt(learner.squared_error(&self.lessons)?);
+        let (before, successes) = learner.errors(&self.lessons)?;
         let mut draw = Stream::new(seed, Domain::Network, 0, 0, generation);
         for _ in 0..self.learning.epochs {
             let mut order: Vec<&Lesson> = self.lessons.iter().collect();
@@ -178,10 +183,9 @@ impl LabLearner for Trainee {
                 learner.learn(batch)?;
             }
         }
-        let after = Scalar::sqrt(learner.squared_error(&self.lessons)?);
+        let (after, _) = learner.errors(&self.lessons)?;
         state.iter_mut().zip(learner.state()).for_each(|(value, new)| *value = new);
-        // A recorded demonstration is one of success.
-        Some(Iteration { before, after, successes: 1.0 })
+        Some(Iteration { before, after, successes })
     }
 
     fn learned(&self, state: &[f64]) -> Vec<f64> {

@@ -193,3 +193,28 @@ fn groups_that_evolve_earn_their_own_terms() {
         assert_eq!(outcome.success, success, "individual {individual}");
     }
 }
+
+/// The value that is not finite has the place of its term, so that messages name this term.
+#[test]
+fn a_failed_trial_has_the_value_of_the_term_that_failed() {
+    for (formula, wanted) in
+        [("0 / 0", f64::NAN), ("1 / 0", f64::INFINITY), ("if(step > 3, -1 / 0, 1)", f64::NEG_INFINITY)]
+    {
+        let text = format!(
+            r#"
+robot = {{ kind = "e-puck" }}
+sensors = [{{ kind = "constant", value = 0.0 }}]
+motors = [{{ kind = "wheels" }}]
+network = {{ kind = "wired", bias = [0.5, 0.5], wires = [] }}
+episode = {{ steps = 5, trials = 1 }}
+reward = [{{ kind = "touch" }}, {{ kind = "steps", weight = 0.0 }}, {{ formula = "{formula}", name = "broken" }}]
+"#
+        );
+        let mut evaluator = made(&text).unwrap_or_else(|error| panic!("{error}"));
+        let parameters = vec![0.0; evaluator.info().parameters.len()];
+        let outcome = evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), None);
+        assert_eq!(evaluator.info().terms, ["touch", "broken"]);
+        assert!(!outcome.is_finite() && outcome.terms[0] == 0.0, "{outcome:?}");
+        assert_eq!(outcome.terms[1].to_bits() << 1, wanted.to_bits() << 1, "{outcome:?}");
+    }
+}

@@ -77,6 +77,9 @@ fn strangers_are_refused_and_nothing_outside_is_touched() {
         "/api/run?name=a%00b",
         "/api/run?name=%ff",
         "/api/info?experiment=--help",
+        "/api/info?experiment=link.toml",
+        "/api/info?experiment=link",
+        "/api/graph?experiment=link.toml",
         "/api/info?experiment=..%2Fsecret.toml",
         "/api/info?experiment=double-pole&condition=--json",
         "/files/pages/config.toml",
@@ -122,6 +125,37 @@ fn strangers_are_refused_and_nothing_outside_is_touched() {
     assert!([0, 413].contains(&lab.raw(&bytes).0));
     assert_eq!(all(&root), before);
     assert_eq!(lab.data("/api/list")["runs"], json!([]));
+}
+
+/// A folder may come with jobs that no request has made.
+#[test]
+fn forged_jobs_are_not_started() {
+    let root = scratch("lab-forged");
+    let here = root.join("folder");
+    fs::create_dir_all(here.join(".lab/jobs")).expect("a folder");
+    ok(farsa(), &here, "new follow --from light --quiet");
+    let outside = root.join("outside").display().to_string();
+    let quick = ["--set", "evolution.population=4", "--generations", "1"];
+    let words: [Vec<&str>; 7] = [
+        ["run", "follow.toml"].into_iter().chain(quick).chain(["--out", &outside]).collect(),
+        ["run", "follow.toml", "--out", &outside].into_iter().chain(quick).chain(["--out", "runs/a"]).collect(),
+        ["run", "../follow.toml"].into_iter().chain(quick).chain(["--out", "runs/a"]).collect(),
+        ["run", "--resume", "../outside"].to_vec(),
+        ["new", "evil"].to_vec(),
+        ["test", "runs/a", "--protocol", "--out", "--json"].to_vec(),
+        ["export", "controller", "runs/a", "--out", &outside].to_vec(),
+    ];
+    for (number, words) in words.iter().enumerate() {
+        let job = json!({ "number": number + 1, "kind": "run", "run": "a", "words": words, "created": 1, "pid": null,
+            "has_started": false, "has_ended": false });
+        fs::write(here.join(format!(".lab/jobs/{}.json", number + 1)), job.to_string()).expect("a job");
+    }
+    let before = all(&root);
+    let lab = Lab::start(&here, &[]);
+    assert_eq!(lab.get("/api/list").0, 200);
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    drop(lab);
+    assert_eq!(all(&root), before);
 }
 
 #[test]

@@ -38,7 +38,7 @@ impl StrategyDefinition for Learning {
         }
         let mut evaluator = (start.evaluator)()?;
         let Some(learner) = evaluator.learner() else {
-            return Err(Error::Other("an experiment that learns without a learner".into()));
+            return Err(Error::Other("has nothing to learn from: the strategy `learning` needs demonstrations, in a file by its table `learning`".into()));
         };
         let state = learner.initial_state(start.seed);
         let learned = learner.learned(&state);

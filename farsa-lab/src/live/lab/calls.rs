@@ -110,12 +110,14 @@ impl Bench {
             "/api/run" => self.run(&needed("name")?),
             "/api/info" => {
                 let (condition, strategy) = (given("condition")?, given("strategy")?);
+                self.folder.no_link(&needed("experiment")?)?;
                 let words =
                     about("info", &needed("experiment")?, condition.as_deref(), strategy.as_deref(), &["--json"]);
                 self.printed(&words?, None, JSON)
             }
             "/api/strategies" => self.printed(&["strategies".to_owned(), "--json".to_owned()], None, JSON),
             "/api/graph" => {
+                self.folder.no_link(&needed("experiment")?)?;
                 let words =
                     about("check", &needed("experiment")?, given("condition")?.as_deref(), None, &["--graph", "-"]);
                 self.printed(&words?, None, "image/svg+xml")

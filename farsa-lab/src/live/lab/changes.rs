@@ -109,6 +109,7 @@ impl Bench {
 
     fn start_runs(&self, request: &RunRequest) -> Result<Reply, Refusal> {
         request.check()?;
+        self.folder.no_link(&request.experiment)?;
         self.folder.made(&[RUNS])?;
         let mut planned = Vec::new();
         for &seed in &request.seeds {

@@ -18,7 +18,7 @@ const MAX_STEM: usize = 80;
 #[serde(deny_unknown_fields)]
 pub(super) struct RunRequest {
     /// A built-in experiment or a file of the folder.
-    experiment: String,
+    pub(super) experiment: String,
     condition: Option<String>,
     strategy: Option<String>,
     pub(super) seeds: Vec<u64>,
@@ -277,6 +277,34 @@ fn place(run: &str) -> String {
 /// [`Refusal`].
 pub(super) fn experiment(text: &str) -> Result<&str, Refusal> {
     if is_file(text) { file_name(text) } else { name(text) }
+}
+
+/// Checks that the arguments of a stored job are those of a request for its run. The file may be part of an untrusted folder.
+pub(super) fn is_of_request(run: &str, words: &[String]) -> bool {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let place = place(run);
+    let number = |text: &str| text.parse::<u64>().is_ok();
+    let setting = |text: &str| text.split_once('=').is_some_and(|(of, given)| key(of).is_ok() && value(given).is_ok());
+    let pairs = |rest: &[&str], numbers: &[&str], names: &[&str]| {
+        let (pairs, []) = rest.as_chunks::<2>() else { return false };
+        pairs.iter().all(|[option, given]| match *option {
+            "--set" => names.contains(option) && setting(given),
+            option if numbers.contains(&option) => number(given),
+            option => names.contains(&option) && name(given).is_ok(),
+        })
+    };
+    name(run).is_ok()
+        && match words[..] {
+            ["run", "--resume", of, ref rest @ ..] => of == place && pairs(rest, &["--generations", "--threads"], &[]),
+            ["run", of, ref rest @ .., "--out", out] => {
+                let numbers = ["--seed", "--generations", "--threads"];
+                experiment(of).is_ok() && out == place && pairs(rest, &numbers, &["--condition", "--strategy", "--set"])
+            }
+            ["test", of, ref rest @ .., "--json"] => {
+                of == place && pairs(rest, &["--trials", "--seed"], &["--protocol"])
+            }
+            _ => false,
+        }
 }
 
 /// Returns the arguments of a command that describes an experiment.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::live::lab::names::{Refusal, file_name, name};
+use crate::run::laboratory::{FILE, is_file};
 
 /// Folder of the server's own files.
 const OWN: &str = ".lab";
@@ -83,6 +84,15 @@ impl Folder {
     pub(super) fn experiment(&self, text: &str) -> Result<PathBuf, Refusal> {
         let path = self.place(&[file_name(text)?])?;
         if path.is_file() { Ok(path) } else { Err(Refusal::new(404, format!("there is no file {text:?}"))) }
+    }
+
+    /// Refuses a file that is a link as an experiment. A name without extension may be that of a file, too.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub(super) fn no_link(&self, experiment: &str) -> Result<(), Refusal> {
+        let file = if is_file(experiment) { experiment.to_owned() } else { format!("{experiment}{FILE}") };
+        self.place(&[file_name(&file)?]).map(|_| ())
     }
 
     /// Lists the runs by their names.

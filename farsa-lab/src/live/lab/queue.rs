@@ -13,6 +13,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
+use crate::live::lab::command_line::is_of_request;
 use crate::live::lab::folder::Folder;
 use crate::live::lab::names::Refusal;
 use crate::live::lab::program::Program;
@@ -90,6 +91,9 @@ impl Queue {
             }
             let text = read_regular_text(&path, MAX_BYTES).unwrap_or_default();
             let Ok(mut job) = serde_json::from_str::<Job>(&text) else { continue };
+            if !is_of_request(&job.run, &job.words) || path.file_stem() != Some(job.number.to_string().as_ref()) {
+                continue;
+            }
             state.next = state.next.max(job.number + 1);
             // The server may have ended between the start of the process and its description.
             job.has_started |= log_of(&place, job.number).is_file();
