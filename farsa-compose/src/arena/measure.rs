@@ -9,6 +9,7 @@ use crate::arena::scene::{Scene, Thing};
 use crate::check::source::Source;
 use crate::document::RewardKind;
 use crate::formula::channels::Channels;
+use crate::part::Area;
 use crate::part::object::PlanarTerm;
 
 /// The measure of a term for one robot.
@@ -36,8 +37,8 @@ pub(crate) enum Measure {
     StraightOn,
     /// Channels of the network's inputs.
     Sensor([usize; 2]),
-    InArea(Vec<MeasuredArea>),
-    FullestArea(Vec<MeasuredArea>),
+    InArea(Vec<Area>),
+    FullestArea(Vec<Area>),
     Dispersion,
     Clusters,
     LargestCluster,
@@ -71,19 +72,10 @@ pub(crate) enum Measure {
     /// For each robot.
     Registered(Vec<Box<dyn PlanarTerm>>),
     Step,
-    RobotsInArea(Vec<MeasuredArea>),
+    RobotsInArea(Vec<Area>),
     Channels(Channels),
     /// Value of the term's formula.
     Formula,
-}
-
-/// An area.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MeasuredArea {
-    pub(crate) body: BodyId,
-    /// Half the sides [m]. For a disc, both numbers are its radius.
-    pub(crate) half: [f64; 2],
-    pub(crate) disc: bool,
 }
 
 impl Measure {
@@ -190,9 +182,9 @@ impl Measure {
 }
 
 /// Returns all areas of a name.
-fn areas(name: &str, path: &str, scene: &Scene, source: &Source) -> Result<Vec<MeasuredArea>, Error> {
+fn areas(name: &str, path: &str, scene: &Scene, source: &Source) -> Result<Vec<Area>, Error> {
     let area = |thing: Thing| match thing {
-        Thing::Area { body, half, disc } => Ok(MeasuredArea { body, half, disc }),
+        Thing::Area(area) => Ok(area),
         _ => Err(source.wrong(path, format!("`{name}` is no disc or rectangle"))),
     };
     scene.things(name, path, source)?.into_iter().map(area).collect()

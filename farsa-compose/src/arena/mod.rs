@@ -13,7 +13,7 @@ pub(crate) mod field;
 /// Field in recordings and animations.
 mod field_view;
 /// Spread and clusters of robots.
-mod gathering;
+pub(crate) mod gathering;
 /// Measures of terms.
 pub(crate) mod measure;
 /// Registered sensors and motors.

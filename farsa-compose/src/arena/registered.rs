@@ -79,7 +79,7 @@ impl Surroundings for PartOfPlanar<'_> {
 
     fn area(&self, name: &str) -> Result<Area, Error> {
         match self.scene.thing(name, self.path, self.source)? {
-            Thing::Area { body, half, disc } => Ok(Area { body, half, disc }),
+            Thing::Area(area) => Ok(area),
             _ => Err(self.error(format!("`{name}` is no disc or rectangle"))),
         }
     }

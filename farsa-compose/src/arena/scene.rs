@@ -7,6 +7,7 @@ use farsa_physics::arena::{Area, Arena, CollisionRule, Cylinder, Wall};
 
 use crate::check::source::Source;
 use crate::document::{Collisions, Document, Engine, Object, ObjectKind, Robot, RobotKind};
+use crate::part;
 use crate::parts::groups::Groups;
 
 /// A named thing.
@@ -16,8 +17,8 @@ pub(crate) enum Thing {
     Cylinder { body: BodyId, radius: f64 },
     /// A robot with its radius [m].
     Robot { body: BodyId, radius: f64 },
-    /// An area with half its sides [m]. For a disc, both numbers are its radius.
-    Area { body: BodyId, half: [f64; 2], disc: bool },
+    /// A disc or rectangle of the ground.
+    Area(part::Area),
     /// A block with half the diagonal of its base [m].
     Block { body: BodyId, reach: f64 },
     /// A wall, which has no body.
@@ -44,7 +45,7 @@ impl Thing {
         match self {
             Self::Cylinder { body, .. }
             | Self::Robot { body, .. }
-            | Self::Area { body, .. }
+            | Self::Area(part::Area { body, .. })
             | Self::Block { body, .. } => Some(body),
             Self::Wall => None,
         }
@@ -55,7 +56,7 @@ impl Thing {
         match self {
             Self::Cylinder { radius, .. } | Self::Robot { radius, .. } => radius,
             Self::Block { reach, .. } => reach,
-            Self::Area { half, .. } => half[0].max(half[1]),
+            Self::Area(part::Area { half, .. }) => half[0].max(half[1]),
             Self::Wall => 0.0,
         }
     }
@@ -163,9 +164,9 @@ impl Scene {
                     cylinders += 1;
                     Thing::Cylinder { body: arena.cylinder(cylinders - 1), radius }
                 }
-                Thing::Area { half, disc, .. } => {
+                Thing::Area(area) => {
                     areas += 1;
-                    Thing::Area { body: arena.area(areas - 1), half, disc }
+                    Thing::Area(part::Area { body: arena.area(areas - 1), ..area })
                 }
                 Thing::Block { reach, .. } => {
                     pushed += 1;
@@ -287,11 +288,11 @@ fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]
         ObjectKind::Ball { .. } | ObjectKind::Marker { .. } | ObjectKind::Registered { .. } => Thing::Wall,
         ObjectKind::Disc { radius, color } => {
             arena.add_area(Area { heading, ..Area::circle(at, radius, color) });
-            Thing::Area { body, half: [radius; 2], disc: true }
+            Thing::Area(part::Area { body, half: [radius; 2], disc: true })
         }
         ObjectKind::Rectangle { size, color } => {
             arena.add_area(Area::rectangle(at, size, heading, color));
-            Thing::Area { body, half: size.map(|x| 0.5 * x), disc: false }
+            Thing::Area(part::Area { body, half: size.map(|x| 0.5 * x), disc: false })
         }
     }
 }

@@ -16,6 +16,7 @@ use crate::check::registry::Registry;
 use crate::check::source::Source;
 use crate::document::{Document, Ending, MotorKind, Reward, SensorKind, TestProtocol};
 use crate::formula::compile::Quantity;
+use crate::part::Area;
 use crate::parts::agents::Agents;
 use crate::parts::conditions::FormulaConditions;
 use crate::parts::equipment::Equipment;
@@ -146,7 +147,7 @@ fn foraging(
     };
     let path = "/foraging/nest";
     match scene.thing(&foraging.nest, path, source)? {
-        Thing::Area { body, half: [radius, _], disc: true } => {
+        Thing::Area(Area { body, half: [radius, _], disc: true }) => {
             let cells = foraging.cells as usize;
             Ok(Some((body, Field::new(scene.size, cells, foraging.cost, radius, scene.robots.len()))))
         }

@@ -9,7 +9,7 @@ use farsa_num::{Scalar, atan2};
 
 use crate::arena::field::Field;
 use crate::arena::gathering::{Gathering, distance};
-use crate::arena::measure::{Measure, MeasuredArea};
+use crate::arena::measure::Measure;
 use crate::arena::scene::Scene;
 use crate::check::source::Source;
 use crate::document::RewardKind;
@@ -295,7 +295,7 @@ impl Term {
                 let channels = Rows::of(rows.x, rows.inputs, robot).get(*first..*end).unwrap_or_default();
                 channels.iter().map(|x| f64::from(*x)).reduce(Scalar::max).unwrap_or(0.0)
             }
-            Measure::InArea(areas) => yes(areas.iter().any(|area| is_in(area, pose, world))),
+            Measure::InArea(areas) => yes(areas.iter().any(|area| area.contains(world, *pose))),
             // 1 - mean |p - p_j| / diagonal. The sum contains the robot itself at distance 0, the mean does not count it.
             Measure::NearOthers { diagonal } => {
                 let way = |other: &Pose| f64::from(distance(pose, other));
@@ -381,14 +381,14 @@ impl Term {
                 let mut robots = vec![0_u32; areas.len()];
                 for pose in rows.poses {
                     // A robot in two overlapping areas counts for the first one only.
-                    if let Some(area) = areas.iter().position(|area| is_in(area, pose, world)) {
+                    if let Some(area) = areas.iter().position(|area| area.contains(world, *pose)) {
                         robots[area] += 1;
                     }
                 }
                 share(f64::from(robots.into_iter().max().unwrap_or(0)))
             }
             Measure::RobotsInArea(areas) => {
-                let inside = |pose: &&Pose| areas.iter().any(|area| is_in(area, pose, world));
+                let inside = |pose: &&Pose| areas.iter().any(|area| area.contains(world, **pose));
                 rows.poses.iter().filter(inside).count() as f64
             }
             Measure::Dispersion => gathering().dispersion,
@@ -404,18 +404,6 @@ impl Term {
 fn turned(pose: &Pose, [u, v]: [f64; 2]) -> [f64; 2] {
     let [ahead, left, _] = pose.cast::<f64>().rotate_back([u, v, 0.0]);
     [ahead, left]
-}
-
-/// Checks if the center of a robot is in an area.
-fn is_in<W: ArenaWorld>(area: &MeasuredArea, robot: &Pose, world: &W) -> bool {
-    let MeasuredArea { body, half, disc } = area;
-    let area = world.pose(*body);
-    if *disc {
-        return distance(robot, &area) <= half[0] as f32;
-    }
-    // In the axes of the rectangle, where its sides are parallel to u and v.
-    let [u, v] = turned(&area, [0, 1].map(|k| f64::from(robot.position[k] - area.position[k])));
-    u.abs() <= half[0] && v.abs() <= half[1]
 }
 
 /// Computes the mean square of motor values.

@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Learning from demonstrations by back-propagation through time, for the strategy `learning`.
+/// Learning from demonstrations by back-propagation through time, for the strategy `learning`. Gradients with a norm
+/// above 1 are scaled down to 1, and no weight or bias exceeds the largest magnitude of `network.weights`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Learning {
     /// CSV files in the folder of the experiment's file, as `farsa replay RUN --out FILE` writes them. The columns

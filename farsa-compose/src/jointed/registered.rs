@@ -1,7 +1,9 @@
 //! Registered parts.
 
+use farsa_body::Pose;
 use farsa_body::ports::{ActuatorId, BodyId, Channels, JointId, Motor, PairId, Sensor};
 use farsa_body::robots::MobileRobot;
+use farsa_body::sensors::Point;
 use farsa_lab::Error;
 
 use crate::check::completed::builder;
@@ -63,6 +65,16 @@ pub(crate) struct PartOfSpatial<'s> {
     pub(crate) source: &'s Source,
 }
 
+impl PartOfSpatial<'_> {
+    /// Error for a body of a file that is not at the origin of its segment. A part would measure another place.
+    fn frame(&self, name: Option<&str>, body: BodyId) -> Error {
+        let (name, body) = (name.unwrap_or_default(), self.scene.body_name(body));
+        self.error(format!(
+            "`{name}` is not at the origin of its segment `{body}`, where a registered part would measure"
+        ))
+    }
+}
+
 impl Surroundings for PartOfSpatial<'_> {
     fn error(&self, why: String) -> Error {
         self.source.wrong(self.path, why)
@@ -70,12 +82,14 @@ impl Surroundings for PartOfSpatial<'_> {
 
     fn body(&self, name: Option<&str>) -> Result<BodyId, Error> {
         let name = name.map(str::to_owned);
-        self.scene.body(name.as_ref(), self.path, self.source).map(|(body, _)| body)
+        let (body, placement) = self.scene.body(name.as_ref(), self.path, self.source)?;
+        if placement == Pose::identity() { Ok(body) } else { Err(self.frame(name.as_deref(), body)) }
     }
 
     fn thing(&self, name: &str) -> Result<BodyId, Error> {
         match self.scene.point_named(&name.to_owned(), self.path, self.source)?.0 {
-            NamedPoint::Body(point) => Ok(point.body),
+            NamedPoint::Body(point) if point == Point::origin(point.body) => Ok(point.body),
+            NamedPoint::Body(point) => Err(self.frame(Some(name), point.body)),
             NamedPoint::Marker(_) => Err(self.error(format!("`{name}` is a marker, which has no body"))),
         }
     }

@@ -7,6 +7,8 @@ use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, Kinematics, PairId
 use farsa_body::robots::MobileRobot;
 use farsa_lab::Error;
 
+use crate::arena::gathering::distance;
+
 /// Scene of a part in a world of either kind.
 pub(crate) trait Surroundings {
     /// Creates an error with the place of the part.
@@ -30,7 +32,7 @@ pub(crate) trait Surroundings {
 }
 
 /// A disc or rectangle of the ground.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Area {
     /// Body of the area.
     pub body: BodyId,
@@ -43,10 +45,13 @@ pub struct Area {
 impl Area {
     /// Checks if the origin of a pose is in the area.
     pub fn contains<W: Kinematics + Handles<Body = BodyId>>(&self, world: &W, pose: Pose) -> bool {
-        let [x, y, _] = world.pose(self.body).transform_back(pose.position).map(f64::from);
+        let area = world.pose(self.body);
         if self.disc {
-            return x * x + y * y <= self.half[0] * self.half[0];
+            return distance(&pose, &area) <= self.half[0] as f32;
         }
+        // In the axes of the rectangle, where its sides are parallel to x and y.
+        let [u, v] = [0, 1].map(|k| f64::from(pose.position[k] - area.position[k]));
+        let [x, y, _] = area.cast::<f64>().rotate_back([u, v, 0.0]);
         x.abs() <= self.half[0] && y.abs() <= self.half[1]
     }
 }
@@ -70,7 +75,7 @@ impl<'s> PartScene<'s> {
     /// Returns a body of the robot by name, by default the first. A robot on wheels has one body, without a name.
     ///
     /// # Errors
-    /// Returns [`Error::Setting`] for an unknown body.
+    /// Returns [`Error::Setting`] for an unknown body, and for one of a file that is not at the origin of its segment.
     pub fn body(&self, name: Option<&str>) -> Result<BodyId, Error> {
         self.0.body(name)
     }
@@ -78,7 +83,8 @@ impl<'s> PartScene<'s> {
     /// Returns the body of a named thing.
     ///
     /// # Errors
-    /// Returns [`Error::Setting`] for an unknown thing, a wall or a marker.
+    /// Returns [`Error::Setting`] for an unknown thing, a wall, a marker, and a body that is not at the origin of its
+    /// segment.
     pub fn thing(&self, name: &str) -> Result<BodyId, Error> {
         self.0.thing(name)
     }

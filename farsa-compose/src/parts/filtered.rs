@@ -62,8 +62,9 @@ impl<W: ?Sized, T: Sensor<W>> Sensor<W> for Filtered<T> {
 
 impl<W: ?Sized, T: Motor<W>> Motor<W> for Filtered<T> {
     fn drive(&mut self, y: &[f32], world: &mut W) {
-        let passed = &mut self.passed[..y.len()];
-        passed.copy_from_slice(y);
+        let count = y.len().min(self.passed.len());
+        let passed = &mut self.passed[..count];
+        passed.copy_from_slice(&y[..count]);
         self.filter.pass(passed, &mut self.stream);
         self.inner.drive(passed, world);
     }

@@ -166,6 +166,40 @@ fn an_own_term_ends_a_trial() {
 }
 
 #[test]
+fn a_body_away_from_its_joint_is_refused() {
+    const ARM: &str = r#"<mujoco><worldbody><body name="rod"><joint name="hinge" axis="0 0 1" pos="POS" range="-90 90"/>
+<geom size="0.1"/></body></worldbody><actuator><motor joint="hinge"/></actuator></mujoco>"#;
+    let file = |at: &str| {
+        let robot = "robot = { kind = \"model\", file = \"arm.xml\" }";
+        let text = JOINTS.replace("robot = { kind = \"turntable\" }", robot);
+        let text = text.replacen("from = \"ball\"", "from = \"rod\"", 1);
+        let text = text.replace("kind = \"twist\"", "kind = \"joint-torque\"");
+        text + "[files]\n\"arm.xml\" = '''" + &ARM.replace("POS", at) + "'''\n"
+    };
+    let why = refused(&file("0.5 0 0"));
+    assert!(why.contains("`rod` is not at the origin of its segment `rod`"), "{why}");
+    made(&file("0 0 0")).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[cfg(feature = "rapier")]
+#[test]
+fn parts_work_in_rapier() {
+    let planar = format!("world = {{ engine = \"rapier\" }}{WHEELS}");
+    for text in [planar, JOINTS.replace("\"articulated\"", "\"rapier\"")] {
+        let mut rapier = evaluator(&text);
+        let all = [parameters(rapier.as_ref(), 1)];
+        for job in jobs(&all) {
+            let outcome = rapier.evaluate(job, None);
+            let distance = outcome.notes.iter().find(|(name, _)| *name == "measured distance");
+            let Some((_, Note::Number(distance))) = distance else { panic!("{outcome:?}") };
+            // The term measures in space, and the centers have slightly different heights.
+            assert!(outcome.terms[0] > 0.1 && (outcome.terms[0] - distance).abs() <= 1e-5 * distance, "{outcome:?}");
+            assert_eq!(rapier.evaluate(job, None), outcome);
+        }
+    }
+}
+
+#[test]
 fn keys_are_settings_with_text_range_and_unit() {
     let made = made(WHEELS).expect("an experiment");
     let settings = made.settings("");

@@ -4,47 +4,29 @@ use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, ChildStdout};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::tool::{Deadline, command, content, farsa, ok, results, say, scratch};
+use crate::tool::{Announced, command, content, farsa, ok, results, say, scratch};
 
 /// A server that ends with the test. Its runs do not.
 pub(crate) struct Lab {
-    process: Child,
+    _program: Announced,
     port: u16,
     pub(crate) token: String,
-    _said: BufReader<ChildStdout>,
-    _deadline: Deadline,
-}
-
-impl Drop for Lab {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
 }
 
 impl Lab {
     pub(crate) fn start(here: &Path, options: &[&str]) -> Self {
         let words = [&["lab", "--port", "0", "--json"], options].concat();
         let mut start = command(farsa(), here, &words);
-        let mut process = start.stderr(std::process::Stdio::inherit()).spawn().expect("a server");
-        let deadline = Deadline::new(process.id());
-        let mut said = BufReader::new(process.stdout.take().expect("its output"));
-        let mut text = String::new();
-        while !text.ends_with("}\n") {
-            assert!(said.read_line(&mut text).expect("a line") > 0, "it ended: {text}");
-        }
-        let address: Value = serde_json::from_str(&text).expect("JSON");
-        let address = address["address"].as_str().expect("an address").to_owned();
-        let rest = address.strip_prefix("http://127.0.0.1:").expect("this machine");
+        let program = Announced::start(&mut start);
+        let rest = program.address.strip_prefix("http://127.0.0.1:").expect("this machine");
         let (port, token) = rest.split_once("/?token=").expect("a token");
         assert_eq!(token.len(), 32);
-        let port = port.parse().expect("a port");
-        Self { process, port, token: token.into(), _said: said, _deadline: deadline }
+        let (port, token) = (port.parse().expect("a port"), token.into());
+        Self { _program: program, port, token }
     }
 
     pub(crate) fn connect(&self) -> TcpStream {

@@ -3,26 +3,17 @@
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, ChildStdout, Command};
+use std::process::Command;
 use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::tool::{Deadline, command, farsa, ok, say, scratch};
+use crate::tool::{Announced, command, farsa, ok, say, scratch};
 
 /// A server that ends with the test.
 struct Server {
-    process: Child,
+    program: Announced,
     port: u16,
-    _said: BufReader<ChildStdout>,
-    _deadline: Deadline,
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
 }
 
 impl Server {
@@ -39,18 +30,10 @@ impl Server {
     }
 
     fn spawn(start: &mut Command) -> Self {
-        let mut process = start.stderr(std::process::Stdio::inherit()).spawn().expect("a server");
-        let deadline = Deadline::new(process.id());
-        let mut said = BufReader::new(process.stdout.take().expect("its output"));
-        let mut text = String::new();
-        while !text.ends_with("}\n") {
-            assert!(said.read_line(&mut text).expect("a line") > 0, "it ended: {text}");
-        }
-        let told: Value = serde_json::from_str(&text).expect("JSON");
-        let address = told["address"].as_str().expect("an address");
-        let port = address.strip_prefix("http://127.0.0.1:").and_then(|rest| rest.strip_suffix('/'));
+        let program = Announced::start(start);
+        let port = program.address.strip_prefix("http://127.0.0.1:").and_then(|rest| rest.strip_suffix('/'));
         let port = port.and_then(|port| port.parse().ok()).expect("a port");
-        Self { process, port, _said: said, _deadline: deadline }
+        Self { program, port }
     }
 
     /// Opens a connection whose reads and writes end in time.
@@ -74,7 +57,7 @@ impl Server {
     /// Checks that no more than 50 MB of memory were in use at any time.
     #[cfg(target_os = "linux")]
     fn is_small(&self) {
-        let peak = crate::memory::peak(self.process.id()).expect("its memory");
+        let peak = crate::memory::peak(self.program.id()).expect("its memory");
         assert!(peak < 50_000, "{peak} kB");
     }
 
@@ -335,7 +318,7 @@ fn no_thread_is_started_for_a_client() {
     let server = Server::limited(&here, "-v 400000", "r");
     let idle: Vec<_> = (0..30).map(|_| server.connect().expect("a connection")).collect();
     server.gives_its_page();
-    let threads = std::fs::read_dir(format!("/proc/{}/task", server.process.id())).expect("its threads").count();
+    let threads = std::fs::read_dir(format!("/proc/{}/task", server.program.id())).expect("its threads").count();
     assert!(threads <= 2, "{threads}");
     drop(idle);
 }

@@ -2,9 +2,9 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::Read;
+use std::io::{BufRead as _, BufReader, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, ChildStdout, Command, Output, Stdio};
 use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{JoinHandle, sleep};
@@ -175,6 +175,41 @@ impl Deadline {
             }
         });
         Self { _held: held }
+    }
+}
+
+/// A server that prints its address as JSON, and ends with the test.
+pub(crate) struct Announced {
+    process: Child,
+    pub(crate) address: String,
+    _said: BufReader<ChildStdout>,
+    _deadline: Deadline,
+}
+
+impl Drop for Announced {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl Announced {
+    /// Starts a server and waits for its address.
+    pub(crate) fn start(start: &mut Command) -> Self {
+        let mut process = start.stderr(Stdio::inherit()).spawn().expect("a server");
+        let deadline = Deadline::new(process.id());
+        let mut said = BufReader::new(process.stdout.take().expect("its output"));
+        let mut text = String::new();
+        while !text.ends_with("}\n") {
+            assert!(said.read_line(&mut text).expect("a line") > 0, "it ended: {text}");
+        }
+        let address = json(&text)["address"].as_str().expect("an address").to_owned();
+        Self { process, address, _said: said, _deadline: deadline }
+    }
+
+    #[cfg(target_os = "linux")]
+    pub(crate) fn id(&self) -> u32 {
+        self.process.id()
     }
 }
 

@@ -197,13 +197,13 @@ impl Differentiable for BlockModel<'_> {
         &self,
         loss: Loss,
         parameters: &[R],
-        Demonstration { x, wanted }: Demonstration<'_>,
+        of @ Demonstration { x, wanted }: Demonstration<'_>,
         trace: &mut Vec<R>,
     ) -> R {
         let (n, o, neurons) = (self.layout.inputs(), self.layout.outputs(), self.neurons_of());
         let (blocks, mut rings) = (self.blocks_with_weights(), self.rings::<R>());
         let mut state = State::<R>::new(neurons.len());
-        let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
+        let ticks = of.ticks(n, o);
         let mut cost = R::default();
         trace.clear();
         for tick in 0..ticks {
@@ -253,13 +253,13 @@ impl Differentiable for BlockModel<'_> {
         &self,
         loss: Loss,
         parameters: &[R],
-        Demonstration { x, wanted }: Demonstration<'_>,
+        of @ Demonstration { wanted, .. }: Demonstration<'_>,
         mut trace: &[R],
         sum: &mut [R],
     ) {
         let (n, o, neurons) = (self.layout.inputs(), self.layout.outputs(), self.neurons_of());
         let (blocks, mut rings) = (self.blocks_with_weights(), self.rings::<R>());
-        let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
+        let ticks = of.ticks(n, o);
         let mut flow = State::<R>::new(neurons.len());
         let mut to_motors = vec![R::default(); o];
         // Splits the values of a block off the end of the trace.

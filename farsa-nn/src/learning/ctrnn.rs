@@ -83,7 +83,7 @@ impl Differentiable for CtrnnModel {
         &self,
         loss: Loss,
         parameters: &[R],
-        Demonstration { x, wanted }: Demonstration<'_>,
+        of @ Demonstration { x, wanted }: Demonstration<'_>,
         trace: &mut Vec<R>,
     ) -> R {
         let layout = self.layout;
@@ -92,7 +92,7 @@ impl Differentiable for CtrnnModel {
         let [weights, biases] = [CtrnnParameter::Weight, CtrnnParameter::Bias].map(part);
         let [gains, constants] = [CtrnnParameter::Gain, CtrnnParameter::TimeConstant].map(part);
         let Scheme { points, shares } = scheme(layout.integrator());
-        let ticks = wanted.len().checked_div(o).or(x.len().checked_div(m)).unwrap_or(0);
+        let ticks = of.ticks(m, o);
         let (mut y, mut external) = (vec![R::default(); n], vec![R::default(); n]);
         let mut cost = R::default();
         trace.clear();

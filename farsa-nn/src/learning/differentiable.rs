@@ -18,6 +18,13 @@ pub struct Demonstration<'a> {
     pub wanted: &'a [f32],
 }
 
+impl Demonstration<'_> {
+    /// Counts the ticks. Either number of channels may be 0, but not both.
+    pub(crate) fn ticks(&self, sensors: usize, outputs: usize) -> usize {
+        self.wanted.len().checked_div(outputs).or(self.x.len().checked_div(sensors)).unwrap_or(0)
+    }
+}
+
 /// Values that a parameter may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {

@@ -138,11 +138,10 @@ impl<R: Real, M: Differentiable> Gradient<R, M> {
     }
 
     /// Checks a demonstration and returns its number of ticks.
-    fn check(&self, parameters: &[R], Demonstration { x, wanted }: Demonstration<'_>) -> Result<usize, Error> {
+    fn check(&self, parameters: &[R], of: Demonstration<'_>) -> Result<usize, Error> {
         Slice::Parameters.check(self.model.parameter_count(), parameters.len())?;
         let (sensors, outputs) = (self.model.inputs(), self.model.outputs());
-        // Either number may be 0, but not both.
-        let ticks = x.len().checked_div(sensors).or(wanted.len().checked_div(outputs)).unwrap_or(0);
+        let (Demonstration { x, wanted }, ticks) = (of, of.ticks(sensors, outputs));
         if x.len() == ticks * sensors && wanted.len() == ticks * outputs {
             return Ok(ticks);
         }

@@ -31,14 +31,14 @@ impl Differentiable for LeakyModel {
         &self,
         loss: Loss,
         parameters: &[R],
-        Demonstration { x, wanted }: Demonstration<'_>,
+        of @ Demonstration { x, wanted }: Demonstration<'_>,
         trace: &mut Vec<R>,
     ) -> R {
         let Self { layout, leak } = self;
         let (n, h, o) = (layout.sensors(), layout.hidden(), layout.outputs());
         let part = |kind| &parameters[layout.range(kind)];
         let (slope, one) = (R::from_f64(f64::from(layout.slope())), R::from_f64(1.0));
-        let ticks = wanted.len().checked_div(o).or(x.len().checked_div(n)).unwrap_or(0);
+        let ticks = of.ticks(n, o);
         trace.clear();
         // Per tick the responses Y, the activations H and the motor values O. The first tick is the initial rest.
         trace.resize((ticks + 1) * (2 * h + o), R::default());

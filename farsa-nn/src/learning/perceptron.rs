@@ -29,13 +29,13 @@ impl Differentiable for PerceptronModel {
         &self,
         loss: Loss,
         parameters: &[R],
-        Demonstration { x, wanted }: Demonstration<'_>,
+        of @ Demonstration { x, wanted }: Demonstration<'_>,
         trace: &mut Vec<R>,
     ) -> R {
         let (n, o) = (self.inputs, self.outputs);
         let (weights, biases) = parameters.split_at(n * o);
         let slope = R::from_f64(f64::from(self.slope));
-        let ticks = wanted.len().checked_div(o).unwrap_or(0);
+        let ticks = of.ticks(n, o);
         trace.clear();
         trace.resize(ticks * o, R::default());
         let mut cost = R::default();

@@ -1,7 +1,6 @@
 //! Body of an answer: a text in parts, or events.
 
 use std::convert::Infallible;
-use std::fmt::Debug;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -11,16 +10,11 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::live::http::connections::Activity;
+use crate::live::http::paced::{Events, Paced};
 use crate::live::session::json;
 
 /// Bytes of a part of a text. A client is slow if it does not read one in the time of a connection.
 const PART: usize = 64 << 10;
-
-/// Events of an answer that stays open.
-pub(in crate::live) trait Events: Debug + Send + 'static {
-    /// Returns the next event, or `None` at the end of the stream.
-    fn poll(&mut self, context: &mut Context<'_>) -> Poll<Option<Bytes>>;
-}
 
 /// Body whose progress is noted for the limits of its connection.
 #[derive(Debug)]
@@ -32,7 +26,7 @@ pub(in crate::live) struct Answer {
 #[derive(Debug)]
 enum Content {
     Text(Bytes),
-    Events(Box<dyn Events>),
+    Events(Box<Paced>),
 }
 
 impl Answer {
@@ -43,7 +37,7 @@ impl Answer {
 
     pub(in crate::live) fn events(events: impl Events, activity: Arc<Activity>) -> Self {
         activity.streams();
-        Self { content: Content::Events(Box::new(events)), activity }
+        Self { content: Content::Events(Box::new(Paced::new(events))), activity }
     }
 }
 

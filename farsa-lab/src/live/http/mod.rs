@@ -8,5 +8,7 @@ pub(super) mod answer;
 pub(super) mod connections;
 /// Origin of a request, and headers of an answer.
 pub(super) mod origin;
+/// Events at intervals.
+pub(super) mod paced;
 /// Listener and runtime.
 pub(super) mod server;

@@ -1,21 +1,15 @@
 //! Event stream of a listener: server-sent events with new generations and champions.
 
 use std::sync::Arc;
-use std::task::{Context, Poll, ready};
-use std::time::Duration;
 
 use hyper::body::Bytes;
-use tokio::time::{Interval, MissedTickBehavior, interval};
 
-use crate::live::http::answer::{self, event};
+use crate::live::http::answer::event;
+use crate::live::http::paced::{self, Next, REPLACED};
 use crate::live::log_tail::{LogTail, Part};
 use crate::live::run_mark::RunMark;
 use crate::live::serve::state::{Listener, NamedRun};
 
-/// Interval at which the files of a run are checked.
-pub(super) const INTERVAL: Duration = Duration::from_millis(500);
-/// Intervals without an event after which a comment is sent, which detects closed connections.
-const KEEP_ALIVE: u32 = 20;
 /// Most parts of a log that are read without serving other connections.
 const PARTS: usize = 8;
 
@@ -28,42 +22,13 @@ pub(super) struct Events {
     tail: LogTail,
     /// Number of the last champions that were sent.
     champions: u64,
-    ticks: Interval,
-    /// Intervals since the last event.
-    silent: u32,
-    ended: bool,
 }
 
 impl Events {
     /// Starts the events of a run after the given number of generations.
     pub(super) fn new(listener: Listener, run: String, generations: usize) -> Self {
         let tail = LogTail::new(listener.shared().directory.log(), generations);
-        let mut ticks = interval(INTERVAL);
-        ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        Self { listener, run, tail, champions: 0, ticks, silent: 0, ended: false }
-    }
-
-    /// Returns an event that is due, and true if more of the log can be read at once.
-    fn next(&mut self) -> (Option<Bytes>, bool) {
-        let current = self.listener.shared().current();
-        let Some(run) = current.run else { return (None, false) };
-        if run.name != self.run {
-            return (Some(self.replaced()), false);
-        }
-        if let Some((number, event)) = current.champions.filter(|(number, _)| *number != self.champions) {
-            self.champions = number;
-            return (Some(event), false);
-        }
-        // A file that is being written is read in the next interval.
-        match self.rows(&run) {
-            Some(Part::Other) => (Some(self.replaced()), false),
-            Some(Part::Rows(rows, _)) if !rows.is_empty() => {
-                let next = rows.last().map(|row| row.0 + 1);
-                (event("fitness", next, &rows).ok(), false)
-            }
-            Some(Part::Rows(_, more)) => (None, more),
-            None => (None, false),
-        }
+        Self { listener, run, tail, champions: 0 }
     }
 
     /// Reads rows of the given run: its marks are the same before and after.
@@ -86,35 +51,28 @@ impl Events {
         self.tail = tail;
         Some(part)
     }
-
-    /// Ends the stream with the event that another run replaced this one.
-    fn replaced(&mut self) -> Bytes {
-        self.ended = true;
-        Bytes::from_static(b"event: replaced\ndata: {}\n\n")
-    }
 }
 
-impl answer::Events for Events {
-    fn poll(&mut self, context: &mut Context<'_>) -> Poll<Option<Bytes>> {
-        loop {
-            if self.ended {
-                return Poll::Ready(None);
+impl paced::Events for Events {
+    fn next(&mut self) -> Next {
+        let current = self.listener.shared().current();
+        let Some(run) = current.run else { return Next::Nothing };
+        if run.name != self.run {
+            return Next::Last(Bytes::from_static(REPLACED));
+        }
+        if let Some((number, event)) = current.champions.filter(|(number, _)| *number != self.champions) {
+            self.champions = number;
+            return Next::Event(event);
+        }
+        // A file that is being written is read in the next interval.
+        match self.rows(&run) {
+            Some(Part::Other) => Next::Last(Bytes::from_static(REPLACED)),
+            Some(Part::Rows(rows, _)) if !rows.is_empty() => {
+                let next = rows.last().map(|row| row.0 + 1);
+                event("fitness", next, &rows).map_or(Next::Nothing, Next::Event)
             }
-            let (event, more) = self.next();
-            if event.is_some() {
-                self.silent = 0;
-                return Poll::Ready(event);
-            }
-            if more {
-                context.waker().wake_by_ref();
-                return Poll::Pending;
-            }
-            ready!(self.ticks.poll_tick(context));
-            self.silent += 1;
-            if self.silent == KEEP_ALIVE {
-                self.silent = 0;
-                return Poll::Ready(Some(Bytes::from_static(b":\n\n")));
-            }
+            Some(Part::Rows(_, true)) => Next::More,
+            _ => Next::Nothing,
         }
     }
 }
@@ -125,7 +83,7 @@ mod tests {
     use std::fs;
     use std::future::poll_fn;
 
-    use crate::live::http::answer::Events as _;
+    use crate::live::http::paced::{Events as _, Paced};
     use crate::live::serve::state::Shared;
     use crate::store::directory::Directory;
 
@@ -153,15 +111,16 @@ mod tests {
         runtime.block_on(async {
             place(&shared, "first", "0,1.5,1.0,0.0,4,0\n");
             announce(&shared, "first");
-            let mut events = Events::new(Listener::new(shared.clone(), 1).unwrap(), "first".into(), 0);
+            let events = Events::new(Listener::new(shared.clone(), 1).unwrap(), "first".into(), 0);
+            let mut events = Paced::new(events);
             assert!(Listener::new(shared.clone(), 1).is_none());
             let sent = poll_fn(|context| events.poll(context)).await.unwrap();
             assert_eq!(sent, "event: fitness\nid: 1\ndata: [[0,1.5,1.0]]\n\n");
             // The other run has more generations, and the other thread has not found it yet.
             fs::rename(shared.directory.path(), folder.path().join("aside")).unwrap();
-            assert_eq!(events.next(), (None, false));
+            assert_eq!(events.events.next(), Next::Nothing);
             place(&shared, "other", "0,1.5,1.0,0.0,4,0\n1,7.5,7.0,7.0,4,0\n");
-            assert_eq!(events.next(), (None, false));
+            assert_eq!(events.events.next(), Next::Nothing);
             announce(&shared, "other");
             let sent = poll_fn(|context| events.poll(context)).await.unwrap();
             assert_eq!(sent, "event: replaced\ndata: {}\n\n");
@@ -169,7 +128,8 @@ mod tests {
             drop(events);
             assert!(!shared.has_listeners());
             // Another log in the same directory, with the same configuration.
-            let mut events = Events::new(Listener::new(shared.clone(), 1).unwrap(), "other".into(), 1);
+            let events = Events::new(Listener::new(shared.clone(), 1).unwrap(), "other".into(), 1);
+            let mut events = Paced::new(events);
             assert!(poll_fn(|context| events.poll(context)).await.unwrap().ends_with(b"data: [[1,7.5,7.0]]\n\n"));
             let log = format!("{HEAD}0,2.5,1.0,0.0,4,0\n1,8.5,7.0,7.0,4,0\n2,9.5,7.0,7.0,4,0\n");
             fs::write(shared.directory.log(), log).unwrap();
