@@ -143,26 +143,24 @@ fn an_own_term_has_the_bits_of_the_equal_term_of_the_format() {
 
 #[test]
 fn an_own_term_ends_a_trial() {
-    let mut evaluator = evaluator(
-        &WHEELS
-            .replace("steps = 60", "steps = 600")
-            .replace("twist", "wheels")
-            .replace(", largest = 4.0 }]\nnetwork", " }]\nnetwork"),
-    );
-    let all = [vec![3.0; evaluator.info().parameters.len()]];
-    let ways: Vec<f64> = jobs(&all)
-        .into_iter()
-        .map(|job| {
-            let outcome = evaluator.evaluate(job, None);
-            assert!(outcome.steps < 600, "{outcome:?}");
-            match outcome.notes.iter().find(|(name, _)| *name == "measured path") {
-                Some((_, Note::Number(way))) => *way,
-                other => panic!("{other:?}"),
-            }
-        })
-        .collect();
-    // The first step beyond half a meter ends the trial. A step is at most 8 mm long.
-    assert!(ways.iter().all(|way| (0.5..0.51).contains(way)), "{ways:?}");
+    let text = WHEELS
+        .replace("steps = 60", "steps = 600")
+        .replace("twist", "wheels")
+        .replace(", largest = 4.0 }]\nnetwork", " }]\nnetwork");
+    let outcomes = |text: &str| {
+        let mut evaluator = evaluator(text);
+        let all = [vec![3.0; evaluator.info().parameters.len()]];
+        jobs(&all).into_iter().map(|job| evaluator.evaluate(job, None)).collect::<Vec<_>>()
+    };
+    let compared = outcomes(&text);
+    for outcome in &compared {
+        assert!(outcome.steps < 600, "{outcome:?}");
+        let way = outcome.notes.iter().find(|(name, _)| *name == "measured path");
+        // The first step beyond half a meter ends the trial. A step is at most 8 mm long.
+        assert!(matches!(way, Some((_, Note::Number(way))) if (0.5..0.51).contains(way)), "{outcome:?}");
+    }
+    // The same condition as a formula.
+    assert_eq!(outcomes(&text.replace("[{ term = \"path\", above = 0.5 }]", "\"path > 0.5 m\"")), compared);
 }
 
 #[test]
@@ -197,6 +195,60 @@ fn parts_work_in_rapier() {
             assert_eq!(rapier.evaluate(job, None), outcome);
         }
     }
+}
+
+/// A part with tables among its keys.
+#[derive(Clone, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+struct Nested {
+    /// Points of a way.
+    #[serde(default)]
+    points: Vec<Place>,
+}
+
+/// A place of the floor.
+#[derive(Clone, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Place {
+    /// First coordinate [m].
+    #[schemars(range(min = -1.0, max = 1.0))]
+    x: f64,
+}
+
+impl farsa_compose::part::TermPart for Nested {
+    type Term = own::AwayTerm;
+    fn term(&self, scene: &farsa_compose::part::PartScene<'_>) -> Result<own::AwayTerm, Error> {
+        let sum: f64 = self.points.iter().map(|point| point.x).sum();
+        if sum > 1.0 {
+            Err(scene.error(format!("adds up to {sum}")))
+        } else {
+            Ok(own::AwayTerm([scene.body(None)?; 2]))
+        }
+    }
+}
+
+#[test]
+fn keys_may_hold_tables() {
+    let mut parts = parts();
+    parts.push(farsa_compose::part::term::<Nested>("nested"));
+    let made = |points: &str| {
+        let text = format!("{WHEELS}[[reward]]\nkind = \"nested\"\nover = \"end\"\npoints = {points}\n");
+        let vocabulary = Vocabulary { strategies: strategies(), parts: &parts };
+        let made = ComposedExperiment::from_text("own.toml", &text, vocabulary)?;
+        made.prepare("", &Settings::new(made.settings(""))?).map(|_| ())
+    };
+    made("[{ x = 0.5 }, { x = 0.25 }]").expect("valid points");
+    for (points, why) in [
+        ("[{ x = 0.75 }, { x = 0.75 }]", "adds up to 1.5"),
+        ("[{ x = 1.5 }]", "1.5 is outside -1 to 1"),
+        ("[{ y = 0.5 }]", "unknown key `y`"),
+        ("[{}]", "lacks the key `x`"),
+        ("[{ x = \"far\" }]", "reward.4"),
+    ] {
+        let error = made(points).expect_err(points).to_string();
+        assert!(error.starts_with("own.toml line ") && error.contains(why), "{points}: {error}");
+    }
+    let schema: Value = serde_json::from_str(&(FILES.schema)(&parts).expect("a schema")).expect("JSON");
+    assert!(schema.to_string().contains("A place of the floor"));
 }
 
 #[test]

@@ -221,7 +221,7 @@ pub(crate) struct Away {
 }
 
 #[derive(Clone)]
-pub(crate) struct AwayTerm([BodyId; 2]);
+pub(crate) struct AwayTerm(pub(crate) [BodyId; 2]);
 
 impl<W: Kinematics + Handles<Body = BodyId>> Term<W> for AwayTerm {
     fn value(&self, world: &W) -> f64 {
