@@ -50,13 +50,19 @@ class Visitor {
       await this.browser.keys(key);
       return;
     }
-    const [x, y] = await this.browser.run((s) => {
+    const place = () => this.browser.run((s) => {
       const element = [...document.querySelectorAll(s)].find((e) => e.checkVisibility() && !e.disabled);
       element.scrollIntoView({ block: "center" });
       const { left, top, width, height } = element.getBoundingClientRect();
       return [left + width / 2, top + height / 2];
     }, selector);
-    await this.browser.drag([[x, y]]);
+    // A page that grows moves its parts.
+    let at = await place();
+    for (let last; last !== String(at); at = await place()) {
+      last = String(at);
+      await sleep(100);
+    }
+    await this.browser.drag([at]);
   }
 
   // Replaces the text of a field.
@@ -153,6 +159,61 @@ async function journey(visitor, file) {
   check(`${name}: the console is silent`, log.length === 0, log.join(" | "));
 }
 
+// A trial of any individual: settings in place, a cut neuron, a random genome, evolution that becomes a run of the list.
+async function trial(visitor, run) {
+  const { browser, name } = visitor;
+  await browser.go(new URL(`/#/run/${run}`, address));
+  await browser.until(() => document.querySelector("#make-live:enabled"));
+  await visitor.type("#generation", "1");
+  await visitor.type("#individual", "3");
+  await visitor.press("#make-live");
+  await browser.until(() => document.querySelector("iframe.trial"));
+  const within = async (script, ...args) => {
+    await browser.post("frame", { id: await browser.post("element", { using: "css selector", value: "iframe.trial" }) });
+    try {
+      return await script(...args);
+    } finally {
+      await browser.post("frame", { id: null });
+    }
+  };
+  await within(() => browser.until(() => window.farsa && (farsa.ready || farsa.error)));
+  const page = (script, ...args) => within(() => browser.run(script, ...args));
+  check(`${name}: the page is of the chosen individual`, (await page(() => farsa.error ?? document.querySelector("#title").textContent)).includes(run));
+  check(`${name}: it is equal to the run`, (await page(() => farsa.live.verify())).startsWith("Equal to the run"));
+  await page(() => farsa.live.settle({ "network.slope": "0.2" }));
+  const settled = await page(() => farsa.trials.map((trial) => trial.name));
+  check(`${name}: a changed setting runs the trial again beside the other`, settled.length === 2 && settled[1].includes("network.slope = 0.2"), settled.join(" | "));
+  check(`${name}: the form shows the change`, (await page(() => document.querySelector(".setting.changed span").textContent)) === "slope");
+  await page(() => farsa.live.settle({ "network.hidden": "9" }));
+  const wrong = await page(() => document.querySelector("#live [role=status]").textContent);
+  check(`${name}: a setting that the genes do not fit is refused`, wrong.includes("parameters where"), wrong);
+  check(`${name}: the last valid change stays`, (await page(() => document.querySelector(".chips").textContent)).startsWith("network.slope = 0.2"));
+  const neuron = await page(() => [...document.querySelectorAll("[aria-label=Part] option")].map(({ value }) => value).find((value) => value.startsWith("neuron:")));
+  await page((neuron) => farsa.live.set(neuron, ""), neuron);
+  const cut = await page(() => farsa.trials[1].name);
+  check(`${name}: a neuron is cut`, cut.includes(`with ${neuron}`), cut);
+  await visitor.picture("trial");
+  await page(() => farsa.live.undo());
+  await page(() => farsa.live.random());
+  check(`${name}: a random genome is shown`, (await page(() => document.querySelector("#live select").selectedOptions[0].textContent)) === "generation 0, random of seed 2");
+  const before = await page(async () => (await farsa.live.evolve(3)).at(-1).generation);
+  const kept = async (kind) => {
+    await page((kind) => void farsa.live.keep(kind), kind);
+    await visitor.press("dialog .main");
+    return browser.until((kind) => [...document.querySelectorAll(".note")].map((note) => note.textContent).findLast((text) => text.includes(kind === "run" ? "is evolved as" : "Kept as")), kind);
+  };
+  check(`${name}: the changed configuration is kept`, (await kept("configuration")).includes(`exports/${run}.toml`));
+  const note = await kept("run");
+  const made = /evolved as (\S+?)\./.exec(note)?.[1] + (/\.(\d+)\./.exec(note) ? `.${/\.(\d+)\./.exec(note)[1]}` : "");
+  await visitor.press("#home");
+  const row = await browser.until((made) => {
+    const row = document.querySelector(`[data-run="${made}"]`);
+    return row && /finished|stopped|failed/.test(row.textContent) && row.textContent;
+  }, made);
+  check(`${name}: the run of the page is in the list`, row.includes(`${before + 1} of`), row);
+  await browser.log();
+}
+
 // Pages that the server opens, with the agent in its own workers and without the origin of the laboratory.
 async function pages(browser, run) {
   for (const kind of ["live", "report"]) {
@@ -228,6 +289,7 @@ async function visit(name, file, { scheme, then, ...options }) {
 }
 await visit("mouse, light", "seeker", { size: [1440, 900], scheme: "light", then: async (visitor) => {
   await text(visitor, "seeker");
+  await trial(visitor, "seeker-1");
   await pages(visitor.browser, "seeker-1");
 } });
 await visit("keys, dark", "finder", { size: [1440, 900], scheme: "dark", keys: true });

@@ -114,8 +114,17 @@ impl Op {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Program {
     ops: Vec<Op>,
-    /// True if the values fit on a small stack, which takes fewer instructions to clear.
-    small: bool,
+    store: Store,
+}
+
+/// Where values are during an evaluation. Smaller stacks take fewer instructions to clear.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Store {
+    /// In a register: one quantity, then operations of one operand.
+    Register,
+    SmallStack,
+    #[default]
+    Stack,
 }
 
 /// A program under construction.
@@ -165,7 +174,12 @@ impl Assembly {
 
     /// Returns the program.
     pub(crate) fn finish(self) -> Program {
-        Program { ops: self.ops, small: self.most <= SMALL_STACK }
+        let store = match &self.ops[..] {
+            [Op::Load(_), rest @ ..] if rest.iter().all(|op| op.operands() == 1) => Store::Register,
+            _ if self.most <= SMALL_STACK => Store::SmallStack,
+            _ => Store::Stack,
+        };
+        Program { ops: self.ops, store }
     }
 }
 
@@ -178,7 +192,19 @@ impl Program {
     /// Computes the value, with quantities from `load`. It is NaN if one of them is not finite.
     #[inline(always)]
     pub(crate) fn evaluate(&self, load: impl FnMut(usize) -> f64) -> f64 {
-        if self.small { self.run::<SMALL_STACK>(load) } else { self.evaluate_large(load) }
+        match self.store {
+            Store::Register => self.run_in_register(load),
+            Store::SmallStack => self.run::<SMALL_STACK>(load),
+            Store::Stack => self.evaluate_large(load),
+        }
+    }
+
+    #[inline(always)]
+    fn run_in_register(&self, mut load: impl FnMut(usize) -> f64) -> f64 {
+        let Some((Op::Load(number), rest)) = self.ops.split_first() else { return f64::NAN };
+        let quantity = load(*number as usize);
+        let value = rest.iter().fold(quantity, |x, op| unary(*op, x));
+        if quantity.is_finite() { value } else { f64::NAN }
     }
 
     #[inline(never)]
@@ -212,8 +238,6 @@ impl Program {
                         top
                     }
                 }
-                Op::Negate => -top,
-                Op::Not => 1.0 - top,
                 Op::Add => below() + top,
                 Op::Subtract => below() - top,
                 Op::Multiply => below() * top,
@@ -228,21 +252,6 @@ impl Program {
                 Op::Or => yes(below() == 1.0 || top == 1.0),
                 Op::Min => smaller(below(), top),
                 Op::Max => larger(below(), top),
-                Op::AddConstant(x) => top + x,
-                Op::SubtractConstant(x) => top - x,
-                Op::MultiplyConstant(x) => top * x,
-                Op::DivideConstant(x) => top / x,
-                Op::LessConstant(x) => yes(top < *x),
-                Op::GreaterConstant(x) => yes(top > *x),
-                Op::MinRight(x) => smaller(top, *x),
-                Op::MaxRight(x) => larger(top, *x),
-                Op::SubtractFrom(x) => x - top,
-                Op::DivideInto(x) => x / top,
-                Op::MinLeft(x) => smaller(*x, top),
-                Op::MaxLeft(x) => larger(*x, top),
-                Op::Abs => Scalar::abs(top),
-                Op::Sign => sign(top),
-                Op::Sqrt => Scalar::sqrt(top),
                 Op::Clamp => {
                     let low = below();
                     smaller(larger(below(), low), top)
@@ -251,10 +260,35 @@ impl Program {
                     let chosen = below();
                     if below() == 1.0 { chosen } else { top }
                 }
-                _ => transcendental(*op, top),
+                _ => unary(*op, top),
             };
         }
         if broken { f64::NAN } else { top }
+    }
+}
+
+/// Computes an operation of one operand.
+#[inline(always)]
+fn unary(op: Op, x: f64) -> f64 {
+    match op {
+        Op::Negate => -x,
+        Op::Not => 1.0 - x,
+        Op::AddConstant(y) => x + y,
+        Op::SubtractConstant(y) => x - y,
+        Op::MultiplyConstant(y) => x * y,
+        Op::DivideConstant(y) => x / y,
+        Op::LessConstant(y) => yes(x < y),
+        Op::GreaterConstant(y) => yes(x > y),
+        Op::MinRight(y) => smaller(x, y),
+        Op::MaxRight(y) => larger(x, y),
+        Op::SubtractFrom(y) => y - x,
+        Op::DivideInto(y) => y / x,
+        Op::MinLeft(y) => smaller(y, x),
+        Op::MaxLeft(y) => larger(y, x),
+        Op::Abs => Scalar::abs(x),
+        Op::Sign => sign(x),
+        Op::Sqrt => Scalar::sqrt(x),
+        _ => transcendental(op, x),
     }
 }
 

@@ -255,7 +255,7 @@ impl Scene {
 
     /// Returns the position of the sphere's center in the world (in meters).
     pub fn sphere_centre<W: Kinematics<Body = BodyId> + ?Sized>(&self, world: &W) -> [f64; 3] {
-        world.pose(Tabletop::SPHERE).position.map(f64::from)
+        world.origin(Tabletop::SPHERE).map(f64::from)
     }
 
     /// Computes an observation from the current state of a world.

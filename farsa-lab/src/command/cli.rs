@@ -178,7 +178,10 @@ impl<'e> Invocation<'e, '_> {
                 self.summary(args.json, &summary.text(), &|| pretty(&summary))
             }
             Command::Run(args) => {
-                let (summary, plan) = self.start_or_resume(&args)?;
+                let (summary, plan) = match &args.from {
+                    Some(file) => self.run_from_page(file, &args)?,
+                    None => self.start_or_resume(&args)?,
+                };
                 let text = format!("{}\n{}", summary.text(), next::after_run(&summary, &plan));
                 self.summary(args.json, &text, &|| pretty(&summary))
             }
@@ -354,7 +357,7 @@ impl<'e> Invocation<'e, '_> {
     }
 
     /// Renames an existing run for `--force`, if the new one can start.
-    fn make_room(&self, force: bool, plan: &Plan<'_>, path: &Path) -> Result<(), Error> {
+    pub(super) fn make_room(&self, force: bool, plan: &Plan<'_>, path: &Path) -> Result<(), Error> {
         if !force {
             return Ok(());
         }

@@ -9,7 +9,7 @@ use crate::command::cli::{say, tell};
 use crate::command::invocation::Invocation;
 use crate::error::Error;
 use crate::json::pretty;
-use crate::live::page;
+use crate::live::page::{self, Chosen};
 use crate::live::serve::{self, Served};
 use crate::run::ENGINE;
 use crate::run::plan::Plan;
@@ -32,8 +32,8 @@ impl Invocation<'_, '_> {
         let (directory, plan) = self.existing(&args.directory)?;
         let file = args.module.as_deref().map(module_file).transpose()?;
         let module = self.live_module(file.as_deref(), &plan)?;
-        let generations = &args.generations;
-        let page = page::page(self.laboratory, (&plan, &directory), generations, module, &args.html)?;
+        let chosen = Chosen { generations: &args.generations, individual: args.individual };
+        let page = page::page(self.laboratory, (&plan, &directory), chosen, module, &args.html)?;
         self.summary(args.json, &format!("{}\n", page.summary), &|| pretty(&page))
     }
 

@@ -16,6 +16,8 @@ mod connections;
 mod export;
 /// `farsa new` and `farsa check`.
 mod files;
+/// `farsa run --from`.
+mod from_page;
 /// `farsa import`.
 mod import;
 /// `farsa list` and `farsa info`.

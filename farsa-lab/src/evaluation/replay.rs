@@ -98,6 +98,7 @@ impl<'p> LocatedIndividual<'p> {
 /// An individual of a run, with all that a replay needs.
 pub(crate) struct Replayable {
     pub(crate) evaluator: Box<dyn Evaluator>,
+    pub(crate) genome: Genome,
     pub(crate) parameters: Vec<f32>,
     /// For every trial that was asked for.
     pub(crate) opponents: Vec<Vec<Vec<f32>>>,
@@ -145,7 +146,8 @@ impl Replayable {
         let evaluator = plan.evaluator()?;
         let genotype = plan.genotype(evaluator.as_ref());
         let others = || Error::damaged(path, "its genomes are not those of the experiment");
-        let parameters = genes.first().and_then(|genes| genes.decode(&genotype)).ok_or_else(others)?;
+        let genome = genes.into_iter().next().ok_or_else(others)?;
+        let parameters = genome.decode(&genotype).ok_or_else(others)?;
         let trials = 0..evaluator.info().trials as u32;
         let trials = match trial {
             TrialSelector::All | TrialSelector::Best => trials,
@@ -163,6 +165,7 @@ impl Replayable {
         let intervention = None;
         let mut replayable = Self {
             evaluator,
+            genome,
             parameters,
             opponents,
             normalisation,

@@ -9,16 +9,17 @@ use crate::live::page_run::PageIndividual;
 use crate::run::plan::Plan;
 use crate::store::directory::Directory;
 
-/// Returns the best individual of a generation, by default the run's champion, and its camera.
+/// Returns an individual of a generation, by default its best, and its camera. The default generation is the champion's, or the
+/// last one for an individual.
 ///
 /// # Errors
 /// Errors of [`Replayable::find`].
 pub(crate) fn champion(
     plan: &Plan<'_>,
     directory: &Directory,
-    generation: Option<u32>,
+    [generation, individual]: [Option<u32>; 2],
 ) -> Result<(PageIndividual, View), Error> {
-    let champion = Replayable::find(plan, directory, Selection { generation, ..Selection::default() })?;
+    let champion = Replayable::find(plan, directory, Selection { generation, individual, ..Selection::default() })?;
     let view = champion.schema().view;
     Ok((saved(champion), view))
 }
@@ -32,7 +33,8 @@ pub(crate) fn champions(plan: &Plan<'_>, directory: &Directory) -> Result<Vec<Pa
 }
 
 fn saved(champion: Replayable) -> PageIndividual {
-    let Replayable { generation, individual, parameters, opponents, normalisation, .. } = champion;
+    let Replayable { generation, individual, genome, parameters, opponents, normalisation, .. } = champion;
     let normalisation = normalisation.map(|statistics| statistics.save());
-    PageIndividual { generation, individual, parameters, opponents, normalisation }
+    let genes = genome.words().map(<[u16]>::to_vec);
+    PageIndividual { generation, individual, genes, parameters, opponents, normalisation }
 }

@@ -9,7 +9,7 @@ use crate::experiment::genotype::Genotype;
 use crate::experiment::outcome::Outcome;
 use crate::live::bytes::Bytes;
 use crate::live::page_run::PageIndividual;
-use crate::live::run_state::RunState;
+use crate::live::run_state::{RunState, StateMark};
 use crate::ranks::wire::Outcomes;
 use crate::run::evaluation_backend::{EvaluationBackend, Heard, TaskOf, Unfinished, round};
 use crate::run::plan::Plan;
@@ -68,6 +68,15 @@ impl Evolution {
         Ok(Self { search, info, genotype: plan.genotype(evaluator), champions: None })
     }
 
+    /// Identifies the state after the finished generations.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a strategy that cannot save its state.
+    pub(crate) fn mark(&mut self) -> Result<StateMark, Error> {
+        let state = RunState::of(&mut self.search);
+        state.map(|state| state.mark()).ok_or_else(|| Error::Usage("the strategy cannot save its state".into()))
+    }
+
     /// Evaluates part number `part` of `parts` equal parts of the current generation.
     ///
     /// # Errors
@@ -110,7 +119,8 @@ impl Evolution {
         let normalisation = normalisation.map(|statistics| statistics.save());
         let champions = best.iter().zip(met).filter_map(|(best, opponents)| {
             let (individual, parameters) = (best.individual, best.genes.decode(&self.genotype)?);
-            Some(PageIndividual { generation, individual, parameters, opponents, normalisation: normalisation.clone() })
+            let (genes, normalisation) = (best.genes.words().map(<[u16]>::to_vec), normalisation.clone());
+            Some(PageIndividual { generation, individual, genes, parameters, opponents, normalisation })
         });
         let fitness_of_best = best.first().map_or(Fitness::WORST, |best| best.fitness);
         let champions = match self.champions.take() {

@@ -34,7 +34,10 @@ mod row;
 #[cfg(feature = "command")]
 mod run_mark;
 /// State of a search, from which it continues.
-mod run_state;
+pub(crate) mod run_state;
+/// Run that a page has saved.
+#[cfg(feature = "command")]
+pub(crate) mod saved_run;
 /// `farsa serve`: the page of a running run.
 #[cfg(feature = "command")]
 pub(crate) mod serve;

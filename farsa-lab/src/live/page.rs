@@ -84,6 +84,15 @@ pub(crate) struct LiveSummary {
     pub(crate) summary: String,
 }
 
+/// Individuals of a page.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Chosen<'g> {
+    /// Their generations, by default the champion's.
+    pub(crate) generations: &'g [u32],
+    /// Number in each generation, by default that of the best.
+    pub(crate) individual: Option<u32>,
+}
+
 /// Purpose of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Use<'r> {
@@ -99,33 +108,33 @@ pub(crate) struct PageText {
     generations: Vec<u32>,
 }
 
-/// Writes an interactive page of the best individual of each generation given, by default of the champion.
+/// Writes an interactive page of an individual of each generation given, by default of the champion.
 ///
 /// # Errors
 /// Errors of [`html`] and [`write_outputs`].
 pub(crate) fn page(
     laboratory: &Laboratory<'_>,
     (plan, directory): (&Plan<'_>, &Directory),
-    generations: &[u32],
+    chosen: Chosen<'_>,
     module: &[u8],
     path: &Path,
 ) -> Result<LiveSummary, Error> {
     refuse_other(path)?;
-    let PageText { html, generations } = html(laboratory, (plan, directory), generations, module, Use::File)?;
+    let PageText { html, generations } = html(laboratory, (plan, directory), chosen, module, Use::File)?;
     let bytes = write_outputs(&[(path.into(), html)])?;
     let (directory, file) = (directory.path().display().to_string(), path.display().to_string());
     let summary = format!("{file}: {bytes} bytes, {} individuals of {directory}", generations.len());
     Ok(LiveSummary { directory, file, generations, bytes, summary })
 }
 
-/// Returns the interactive page of the best individual of each generation given, by default of the champion.
+/// Returns the interactive page of an individual of each generation given, by default of the champion.
 ///
 /// # Errors
 /// Errors of [`champion`], and [`Error::Usage`] for an experiment that needs files.
 pub(crate) fn html(
     laboratory: &Laboratory<'_>,
     (plan, directory): (&Plan<'_>, &Directory),
-    generations: &[u32],
+    Chosen { generations, individual }: Chosen<'_>,
     module: &[u8],
     used: Use<'_>,
 ) -> Result<PageText, Error> {
@@ -136,7 +145,7 @@ pub(crate) fn html(
     let chosen = if chosen.is_empty() { BTreeSet::from([None]) } else { chosen };
     let (mut individuals, mut from_above) = (Vec::new(), false);
     for generation in chosen {
-        let (individual, view) = champion(plan, directory, generation)?;
+        let (individual, view) = champion(plan, directory, [generation, individual])?;
         from_above = view == View::Top;
         individuals.push(individual);
     }
@@ -148,7 +157,7 @@ pub(crate) fn html(
         Use::Served { run } => (Err("the run continues in its own process".into()), Some(run.to_owned())),
     };
     let (state, standstill) = state.map_or_else(|why| (None, Some(why)), |state| (Some(state), None));
-    let run = PageRun { config, individuals, state: None };
+    let run = PageRun { config, individuals, newcomer: false, state: None };
     let script = json(&run)?;
     let about = json(&About { history, standstill, run: served.clone(), ..about(laboratory, &run, &script)? })?;
     let state = state.map(|state| json(&state)).transpose()?;

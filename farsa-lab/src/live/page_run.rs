@@ -9,8 +9,11 @@ use crate::live::run_state::RunState;
 pub(crate) struct PageRun {
     /// Content of `config.toml`.
     pub(crate) config: String,
-    /// At least one individual.
+    /// At least one individual, or none for a newcomer.
     pub(crate) individuals: Vec<PageIndividual>,
+    /// True to add a random individual, the first of the run with this configuration.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) newcomer: bool,
     /// State from which evolution continues, where it can.
     #[serde(default, rename = "standing")]
     pub(crate) state: Option<RunState>,
@@ -21,6 +24,9 @@ pub(crate) struct PageRun {
 pub(crate) struct PageIndividual {
     pub(crate) generation: u32,
     pub(crate) individual: u32,
+    /// Its genes, where they are integers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) genes: Option<Vec<u16>>,
     pub(crate) parameters: Vec<f32>,
     /// Opponents of each trial, one of each other population.
     pub(crate) opponents: Vec<Vec<Vec<f32>>>,

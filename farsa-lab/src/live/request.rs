@@ -27,6 +27,12 @@ pub(crate) enum Request {
     Names,
     /// Add an individual.
     Add { individual: PageIndividual },
+    /// Return an individual.
+    Individual { individual: usize },
+    /// Return the genes of an individual as a `.gen` file.
+    Genotype { individual: usize },
+    /// Identify the state of the evolution.
+    State,
     /// Evaluate a part of the current generation.
     Share { part: usize, parts: usize },
     /// Report the outcomes of all parts, from which the next generation is made.
@@ -87,6 +93,12 @@ pub(crate) struct EpisodeAnswer {
 #[derive(Debug, Serialize)]
 pub(crate) struct AddedIndividual {
     pub(crate) individual: usize,
+}
+
+/// Genes of an individual.
+#[derive(Debug, Serialize)]
+pub(crate) struct GenotypeText {
+    pub(crate) text: String,
 }
 
 /// Outcomes of a part of a generation.

@@ -1,6 +1,7 @@
 //! State of a search, from which it continues.
 
 use farsa_evo::Snapshot as _;
+use farsa_num::crc32;
 use serde::{Deserialize, Serialize};
 
 use crate::live::bytes::Bytes;
@@ -19,7 +20,24 @@ pub(crate) struct RunState {
     pub(super) observed: Option<Bytes>,
 }
 
+/// Number of finished generations and checksum of the strategy's state after them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub(crate) struct StateMark {
+    pub(crate) generation: u32,
+    pub(crate) state_crc32: u32,
+}
+
+impl StateMark {
+    pub(crate) fn new(generation: u32, state: &[u8]) -> Self {
+        Self { generation, state_crc32: crc32(state) }
+    }
+}
+
 impl RunState {
+    pub(crate) fn mark(&self) -> StateMark {
+        StateMark::new(self.generation, &self.state.0)
+    }
+
     /// Finds the state of a search, or `None` if the strategy cannot save its state.
     pub(crate) fn of(search: &mut SearchState) -> Option<Self> {
         let state = Bytes(search.search.snapshot()?.save());

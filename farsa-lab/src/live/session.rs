@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde_json::value::RawValue;
 
 use crate::error::Error;
+use crate::evaluation::genotypes::written;
 use crate::evaluation::trials::episode;
 use crate::evaluation::trials::{came_to, facts, fitness, success};
 use crate::experiment::PartNames;
@@ -20,7 +21,7 @@ use crate::live::disturbances::disturbances;
 use crate::live::evolution::Evolution;
 use crate::live::page_run::{PageIndividual, PageRun};
 use crate::live::request::{
-    AddedIndividual, EpisodeAnswer, EpisodeRequest, FreshResults, Request, SharedOutcomes, TrialRequest,
+    AddedIndividual, EpisodeAnswer, EpisodeRequest, FreshResults, GenotypeText, Request, SharedOutcomes, TrialRequest,
 };
 use crate::run::config_file::ConfigFile;
 use crate::run::evaluation_backend::round;
@@ -84,7 +85,9 @@ impl LiveSession {
         let plan = Plan::from_file(laboratory, &ConfigFile::parse("config.toml", &run.config)?)?;
         let evaluator = plan.evaluator()?;
         let agent = |saved: PageIndividual| Agent::new(saved, evaluator.as_ref());
-        let individuals: Vec<Agent> = run.individuals.into_iter().map(agent).collect::<Result<_, _>>()?;
+        let newcomer = if run.newcomer { Some(newcomer(&plan, evaluator.as_ref())?) } else { None };
+        let all = run.individuals.into_iter().chain(newcomer);
+        let individuals: Vec<Agent> = all.map(agent).collect::<Result<_, _>>()?;
         if individuals.is_empty() {
             return Err(Error::Other("script: it has no individual".into()));
         }
@@ -117,6 +120,9 @@ impl LiveSession {
             }
             Request::Names => json(&self.names()),
             Request::Add { individual } => json(&self.add(individual)?),
+            Request::Individual { individual } => json(&agent(&self.individuals, individual)?.saved),
+            Request::Genotype { individual } => json(&self.genotype(individual)?),
+            Request::State => json(&continued(&mut self.evolution)?.mark()?),
             Request::Share { part, parts } => {
                 use_lanes(self.evaluator.as_mut())?;
                 let outcomes = continued(&mut self.evolution)?.share(self.evaluator.as_mut(), part, parts)?;
@@ -133,6 +139,13 @@ impl LiveSession {
         let index = self.individuals.len();
         self.individuals.push(Agent::new(individual, self.evaluator.as_ref())?);
         Ok(AddedIndividual { individual: index })
+    }
+
+    /// Writes the genes of an individual.
+    fn genotype(&self, individual: usize) -> Result<GenotypeText, Error> {
+        let PageIndividual { generation, individual, genes, .. } = &agent(&self.individuals, individual)?.saved;
+        let genes = genes.as_ref().ok_or_else(|| Error::Usage("its genes are no integers".into()))?;
+        Ok(GenotypeText { text: written(&format!("{generation}_{individual}_0.wts"), genes) })
     }
 
     /// Gets the number of kinds of trials.
@@ -254,6 +267,21 @@ impl LiveSession {
     fn names(&self) -> Vec<PartNames> {
         self.evaluator.info().anatomy.map(|anatomy| anatomy.names()).unwrap_or_default()
     }
+}
+
+/// Draws an individual, the first of the plan's first generation. The first of each other population are its opponents.
+fn newcomer(plan: &Plan<'_>, evaluator: &dyn Evaluator) -> Result<PageIndividual, Error> {
+    let (strategy, genotype) = (plan.strategy()?, plan.genotype(evaluator));
+    let size = strategy.individuals() / strategy.populations();
+    let first = |population: usize| {
+        let genome = strategy.genome(population * size)?;
+        Some((genome.decode(&genotype)?, genome.words().map(<[u16]>::to_vec)))
+    };
+    let all: Option<Vec<_>> = (0..strategy.populations()).map(first).collect();
+    let mut all = all.into_iter().flatten();
+    let (parameters, genes) = all.next().ok_or_else(|| Error::Other("script: no individual can be drawn".into()))?;
+    let opponents = vec![all.map(|(parameters, _)| parameters).collect(); evaluator.info().trials];
+    Ok(PageIndividual { generation: 0, individual: 0, genes, parameters, opponents, normalisation: None })
 }
 
 /// Returns the search, if the page has one.

@@ -194,6 +194,14 @@ impl Genome {
         }
     }
 
+    /// Gets integer genes.
+    pub(crate) fn words(&self) -> Option<&[u16]> {
+        match self {
+            Self::Words(genes) => Some(genes),
+            Self::Reals(_) => None,
+        }
+    }
+
     /// Decodes the genome. Returns none for another number of genes.
     pub(crate) fn decode(&self, genotype: &Genotype) -> Option<Vec<f32>> {
         match self {

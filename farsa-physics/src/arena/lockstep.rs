@@ -21,7 +21,7 @@ pub(crate) trait Lockstep: Send + Sync {
     fn step(&self, model: &Model, words: &mut [f32], work: &mut [f32]);
     /// Readings of a robot's infrared ring. See [`ring`].
     fn infrared(&self, model: &Model, words: &[f32], robot: usize, out: &mut [f32]);
-    /// Returns the again.
+    /// Returns a copy.
     fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 

@@ -9,12 +9,12 @@ use farsa_body::ports::{
 use farsa_body::{Pose, Twist};
 
 use crate::articulated::link::LinkData;
-use crate::articulated::model::Model;
+use crate::articulated::model::{Model, Pair};
 use crate::articulated::ray;
 use crate::articulated::sight;
 use crate::articulated::spatial::{Matrix, Spatial, Vector};
 use crate::articulated::step::{Precision, Scratch};
-use crate::articulated::view::{self, View};
+use crate::articulated::view::{self, View, is_touching};
 use crate::articulated::vision;
 
 /// Words that the ports read of a link: rotation, position, reference point, velocity.
@@ -28,6 +28,8 @@ pub(crate) struct Words {
     pub(crate) state: Vec<f32>,
     /// [`LINK_WORDS`] of each link.
     pub(crate) links: Vec<f32>,
+    /// 1 for each pair that touches, else 0. A lane reads one word of a pair instead of one of each of its points.
+    pub(crate) touching: Vec<f32>,
     /// True if more than commands was changed since the last step.
     pub(crate) arranged: bool,
     /// A world alone, to place the links of one lane.
@@ -39,7 +41,8 @@ impl Words {
         let state = model.initial.iter().flat_map(|x| core::iter::repeat_n(*x, lanes)).collect();
         let links = alloc::vec![0.0; LINK_WORDS * model.links.len() * lanes];
         let alone = (model.initial.clone(), Scratch::new((), model));
-        let mut words = Self { lanes, state, links, arranged: true, alone };
+        let touching = alloc::vec![0.0; model.pairs.len() * lanes];
+        let mut words = Self { lanes, state, links, touching, arranged: true, alone };
         (0..lanes).for_each(|lane| words.place(model, lane));
         words
     }
@@ -50,9 +53,10 @@ impl Words {
     }
 
     /// The state of one lane, and where its links are.
-    pub(crate) fn store(&mut self, lane: usize, state: &[f32], links: &[LinkData<f32>]) {
+    pub(crate) fn store(&mut self, model: &Model<f32>, lane: usize, state: &[f32], links: &[LinkData<f32>]) {
         self.set_state(lane, state);
         store_links(&mut self.links, lane, self.lanes, links);
+        store_touching(&mut self.touching, model, lane, self.lanes, state);
     }
 
     /// Replaces the state of one lane.
@@ -68,6 +72,15 @@ impl Words {
         copy(state, lane_of(&self.state, lane, self.lanes));
         f32::forward_kinematics(model, state, scratch);
         store_links(&mut self.links, lane, self.lanes, &scratch.links);
+        store_touching(&mut self.touching, model, lane, self.lanes, state);
+    }
+}
+
+/// Which pairs touch in one lane, from its state.
+fn store_touching(words: &mut [f32], model: &Model<f32>, lane: usize, lanes: usize, state: &[f32]) {
+    let to = words.iter_mut().skip(lane).step_by(lanes);
+    for (to, pair) in to.zip(&model.pairs) {
+        *to = f32::from(is_touching(model, pair, state));
     }
 }
 
@@ -130,6 +143,10 @@ impl View<f32> for Lane<'_> {
     #[inline]
     fn word(&self, index: usize) -> f32 {
         self.words.state[index * self.words.lanes + self.index]
+    }
+    #[inline]
+    fn touching(&self, index: usize, _pair: &Pair<f32>) -> bool {
+        self.words.touching[index * self.words.lanes + self.index] > 0.0
     }
     #[inline]
     fn set_word(&mut self, index: usize, x: f32) {

@@ -28,7 +28,7 @@ pub const LANES: [usize; 2] = [8, 16];
 pub(crate) trait Lockstep: Send + Sync {
     /// One control step from words to words.
     fn step(&mut self, model: &Model<f32>, words: &mut Words);
-    /// Returns the again.
+    /// Returns a copy.
     fn boxed_clone(&self) -> Box<dyn Lockstep>;
 }
 
@@ -84,6 +84,7 @@ impl<S: Scalar<Real = f32>> Share<S> {
         }
         step(simd, model, &mut self.state, &mut self.scratch);
         self.store(simd, model, &mut words.state, lanes, lane);
+        self.store_touching(simd, model, &mut words.touching, lanes, lane);
         for (w, to) in self.scratch.links.iter().zip(words.links.chunks_exact_mut(LINK_WORDS * lanes)) {
             let rotation = w.rotation.as_flattened();
             let velocity = [w.velocity.angular, w.velocity.linear];
@@ -91,6 +92,18 @@ impl<S: Scalar<Real = f32>> Share<S> {
             for (x, to) in all.into_iter().flatten().zip(to.chunks_exact_mut(lanes)) {
                 x.store(&mut to[range.clone()]);
             }
+        }
+    }
+
+    /// Writes which pairs touch.
+    #[inline(always)]
+    fn store_touching(&self, simd: S::Simd, model: &Model<f32>, to: &mut [f32], lanes: usize, lane: usize) {
+        let (zero, one) = (S::splat(simd, 0.0), S::splat(simd, 1.0));
+        for (pair, to) in model.pairs.iter().zip(to.chunks_exact_mut(lanes)) {
+            let first = model.first_point() + POINT_WORDS * pair.point;
+            let points = self.state[first..first + POINT_WORDS * pair.points].chunks_exact(POINT_WORDS);
+            let touching = points.into_iter().fold(zero.lt(zero), |any, point| any | point[3].gt(zero));
+            S::select(touching, one, zero).store(&mut to[lane..lane + S::LANES]);
         }
     }
 
@@ -154,7 +167,7 @@ impl Lockstep for OneByOne {
             // One scratch serves all lanes, and has the links of the one before.
             <f32 as Precision>::forward_kinematics(model, &self.state, &mut self.scratch);
             <f32 as Precision>::step(model, &mut self.state, &mut self.scratch, &mut self.forces);
-            words.store(lane, &self.state, &self.scratch.links);
+            words.store(model, lane, &self.state, &self.scratch.links);
         }
         words.arranged = false;
     }

@@ -6,7 +6,7 @@ use farsa_body::{Pose, Twist};
 use farsa_num::Real;
 
 use crate::articulated::link::{Motion, WORLD};
-use crate::articulated::model::{Model, Mount, POINT_WORDS};
+use crate::articulated::model::{Model, Mount, POINT_WORDS, Pair};
 use crate::articulated::spatial::{Matrix, Spatial, Vector, add, cross, product, rotate, sub};
 
 /// A world as its ports see it.
@@ -15,11 +15,8 @@ pub(crate) trait View<R: Real> {
     fn model(&self) -> &Model<R>;
     /// A word of the state.
     fn word(&self, index: usize) -> R;
-    /// Returns whether any of `points` points, whose words begin at `first`, carries a normal impulse.
-    #[inline]
-    fn carries(&self, first: usize, points: usize) -> bool {
-        (0..points).any(|point| self.word(first + 3 + POINT_WORDS * point) > R::from_f64(0.0))
-    }
+    /// Returns whether a point of a pair carries a normal impulse.
+    fn touching(&self, index: usize, pair: &Pair<R>) -> bool;
     /// Changes a word of the state.
     fn set_word(&mut self, index: usize, x: R);
     /// Rotation and position of a moving link.
@@ -133,12 +130,21 @@ pub(crate) fn command<R: Real>(world: &mut impl View<R>, actuator: usize, value:
     }
 }
 
+/// Returns whether a point of a pair carries a normal impulse in a state.
+#[inline]
+pub(crate) fn is_touching<R: Real>(model: &Model<R>, pair: &Pair<R>, state: &[R]) -> bool {
+    let first = model.first_point() + POINT_WORDS * pair.point;
+    let points = state[first..first + POINT_WORDS * pair.points].chunks_exact(POINT_WORDS);
+    points.into_iter().any(|point| point[3] > R::from_f64(0.0))
+}
+
 /// Returns whether a point of a pair carries a normal force.
 #[inline]
 pub(crate) fn touches<R: Real>(world: &impl View<R>, pair: PairId) -> bool {
     let model = world.model();
-    let Some(pair) = model.pairs.get(pair.index()) else { return false };
-    world.carries(model.first_point() + POINT_WORDS * pair.point, pair.points)
+    let index = pair.index();
+    let Some(pair) = model.pairs.get(index) else { return false };
+    world.touching(index, pair)
 }
 
 /// Returns the contact of a pair.

@@ -10,14 +10,14 @@ use farsa_body::{Pose, Twist};
 use farsa_num::Real;
 
 use crate::articulated::external::Wrenches;
-use crate::articulated::model::{Model, POINT_WORDS};
+use crate::articulated::model::{Model, Pair};
 use crate::articulated::ray;
 use crate::articulated::sight;
 use crate::articulated::solver::near_pairs;
 use crate::articulated::spatial::{Matrix, Spatial, Vector, sub};
 use crate::articulated::step::{Precision, Scratch};
 use crate::articulated::tree::{forward_kinematics, inverse_dynamics, kinetic_energy, potential_energy};
-use crate::articulated::view::{self, View};
+use crate::articulated::view::{self, View, is_touching};
 use crate::articulated::vision;
 
 /// A single articulated world, which consists of a model and its state.
@@ -138,9 +138,8 @@ impl<R: Precision> View<R> for World<R> {
         self.state[index]
     }
     #[inline]
-    fn carries(&self, first: usize, points: usize) -> bool {
-        let words = &self.state[first..first + POINT_WORDS * points];
-        words.chunks_exact(POINT_WORDS).any(|words| words[3] > R::from_f64(0.0))
+    fn touching(&self, _index: usize, pair: &Pair<R>) -> bool {
+        is_touching(&self.model, pair, &self.state)
     }
     fn set_word(&mut self, index: usize, x: R) {
         self.state[index] = x;

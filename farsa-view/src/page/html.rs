@@ -29,6 +29,8 @@ const LIVE_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:";
 const SERVED_POLICY: &str = " 'wasm-unsafe-eval' blob:; worker-src blob:; connect-src 'self'";
 const LIVE_SCRIPT: &str = concat!(
     include_str!("viewer/live.js"),
+    include_str!("viewer/settings.js"),
+    include_str!("viewer/keep.js"),
     include_str!("viewer/summary.js"),
     include_str!("viewer/evolve.js"),
     include_str!("viewer/move.js")

@@ -18,6 +18,7 @@ const FILES: &[(&str, &str, &str)] = &[
     ("/lab/settings.js", JS, include_str!("lab/settings.js")),
     ("/lab/editor.js", JS, include_str!("lab/editor.js")),
     ("/lab/run.js", JS, include_str!("lab/run.js")),
+    ("/lab/trial.js", JS, include_str!("lab/trial.js")),
 ];
 
 /// The page of a laboratory in the browser. A server of [`farsa-lab`](https://docs.rs/farsa-lab) answers its requests.

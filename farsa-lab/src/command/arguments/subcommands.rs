@@ -120,7 +120,7 @@ pub(crate) struct InfoArgs {
 #[derive(Args)]
 pub(crate) struct RunArgs {
     /// The experiment
-    #[arg(required_unless_present_any = ["resume", "config"])]
+    #[arg(required_unless_present_any = ["resume", "config", "from"])]
     pub(crate) experiment: Option<String>,
     #[command(flatten)]
     pub(crate) variant: VariantArgs,
@@ -164,10 +164,17 @@ pub(crate) struct RunArgs {
     /// Continue the run in a directory (generations may be added)
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) resume: Option<PathBuf>,
+    /// Repeat the generations of a page that were saved in a file, check that they are the same, and with --generations continue
+    #[arg(long, value_name = "FILE", conflicts_with_all = FIXED_BY_PAGE, value_hint = ValueHint::FilePath)]
+    pub(crate) from: Option<PathBuf>,
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
+
+/// Arguments that contradict the configuration of a saved page.
+const FIXED_BY_PAGE: [&str; 10] =
+    ["experiment", "condition", "set", "strategy", "seed", "population", "name", "config", "resume", "replications"];
 
 #[derive(Args)]
 pub(crate) struct BenchArgs {
@@ -348,6 +355,9 @@ pub(crate) struct LiveArgs {
     /// Generations whose best individuals are included, such as 0,10,100 [default: the last]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = whole(0..=u32::MAX))]
     pub(crate) generations: Vec<u32>,
+    /// This individual of each generation, from 0 [default: the best]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
+    pub(crate) individual: Option<u32>,
     /// A WebAssembly module of the experiments, compressed by gzip [default: this program's]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) module: Option<PathBuf>,

@@ -1,6 +1,7 @@
 //! Changes that a request asks of the folder. Each runs the command, or replaces or moves one file.
 
 use std::fs;
+use std::io::Write as _;
 
 use hyper::body::Bytes;
 use serde::Deserialize;
@@ -8,7 +9,9 @@ use serde::de::DeserializeOwned;
 use serde_json::json;
 
 use crate::live::lab::calls::{Bench, JSON, Reply};
-use crate::live::lab::command_line::{ExportRequest, PageRequest, ResumeRequest, RunRequest, TestRequest, about};
+use crate::live::lab::command_line::{
+    ExportRequest, KeepRequest, KeptKind, PageRequest, ResumeRequest, RunRequest, TestRequest, about, continued,
+};
 use crate::live::lab::folder::{EXPORTS, PAGES, RUNS};
 use crate::live::lab::names::{Refusal, file_name, name};
 use crate::live::lab::queue::{Job, Kind};
@@ -70,6 +73,7 @@ impl Bench {
             "/api/stop" => self.stop(&parsed(body)?),
             "/api/page" => self.page(&parsed(body)?),
             "/api/export" => self.export(&parsed(body)?),
+            "/api/keep" => self.keep(&parsed(body)?),
             "/api/trash" => self.trash(parsed(body)?),
             _ => Err(Refusal::new(404, "no such change")),
         }
@@ -172,15 +176,37 @@ impl Bench {
 
     fn export(&self, request: &ExportRequest) -> Result<Reply, Refusal> {
         self.folder.run(&request.run)?;
-        let folder = self.folder.made(&[EXPORTS])?;
         let (stem, end) = request.file();
-        let numbers = std::iter::once(String::new()).chain((2_u32..).map(|number| format!("-{number}")));
-        let mut files = numbers.map(|number| format!("{stem}{number}{end}"));
-        let file = files.find(|file| fs::symlink_metadata(folder.join(file)).is_err());
-        let file = file.ok_or_else(|| Refusal::conflict("all names are in use"))?;
+        let file = self.new_export(&stem, end)?;
         let words = request.words(&file);
         self.program.output(&words, None)?;
         Reply::json(&json!({ "file": format!("{EXPORTS}/{file}"), "command": self.line(&words) }))
+    }
+
+    /// Returns an unused name of a file in the folder of exports.
+    fn new_export(&self, stem: &str, end: &str) -> Result<String, Refusal> {
+        let folder = self.folder.made(&[EXPORTS])?;
+        let numbers = std::iter::once(String::new()).chain((2_u32..).map(|number| format!("-{number}")));
+        let mut files = numbers.map(|number| format!("{stem}{number}{end}"));
+        let file = files.find(|file| fs::symlink_metadata(folder.join(file)).is_err());
+        file.ok_or_else(|| Refusal::conflict("all names are in use"))
+    }
+
+    /// Saves a text of an interactive page under a new name. A run is evolved by its own process, up to the page's generation.
+    fn keep(&self, request: &KeepRequest) -> Result<Reply, Refusal> {
+        let KeepRequest { kind, run, text } = request;
+        self.folder.run(run)?;
+        let file = self.new_export(run, request.extension())?;
+        let path = self.folder.place(&[EXPORTS, name(&file)?])?;
+        let mut new = fs::File::create_new(&path).map_err(|error| Refusal::new(500, error))?;
+        new.write_all(text.as_bytes()).map_err(|error| Refusal::new(500, error))?;
+        let file_in_folder = format!("{EXPORTS}/{file}");
+        if *kind != KeptKind::Run {
+            return Reply::json(&json!({ "file": file_in_folder }));
+        }
+        let run = self.unused(run)?;
+        let job = self.queue.add(Kind::Run, &run, continued(&file, &run))?;
+        Reply::json(&json!({ "file": file_in_folder, "run": run, "command": self.line(&job.words) }))
     }
 
     fn trash(&self, request: TrashRequest) -> Result<Reply, Refusal> {

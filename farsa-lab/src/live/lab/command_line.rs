@@ -159,6 +159,8 @@ pub(super) struct PageRequest {
     /// Generations of an interactive page.
     #[serde(default)]
     generations: Vec<u32>,
+    /// Individual of each generation, instead of the best.
+    individual: Option<u32>,
 }
 
 impl PageRequest {
@@ -198,9 +200,53 @@ impl PageRequest {
             let list: Vec<String> = self.generations.iter().map(u32::to_string).collect();
             words.extend(["--generations".to_owned(), list.join(",")]);
         }
+        if let Some(individual) = self.individual.filter(|_| self.kind == PageKind::Live) {
+            words.extend(["--individual".to_owned(), individual.to_string()]);
+        }
         words.extend(["--html".to_owned(), format!("{PAGES}/{}", self.file()), "--json".to_owned()]);
         words
     }
+}
+
+/// Kind of a text that an interactive page has made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum KeptKind {
+    /// Genes of an individual.
+    Genotype,
+    /// Configuration with changed settings.
+    Configuration,
+    /// Commands that repeat a trial.
+    Script,
+    /// Run that evolution in the page has continued.
+    Run,
+}
+
+/// Request to keep a text of an interactive page.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KeepRequest {
+    pub(super) kind: KeptKind,
+    /// Run of the page.
+    pub(super) run: String,
+    pub(super) text: String,
+}
+
+impl KeepRequest {
+    /// Returns the end of the name of the file.
+    pub(super) fn extension(&self) -> &'static str {
+        match self.kind {
+            KeptKind::Genotype => ".gen",
+            KeptKind::Configuration => ".toml",
+            KeptKind::Script => ".sh",
+            KeptKind::Run => ".run.json",
+        }
+    }
+}
+
+/// Returns the arguments of the command that continues a saved run.
+pub(super) fn continued(file: &str, run: &str) -> Vec<String> {
+    vec!["run".into(), "--from".into(), format!("{EXPORTS}/{file}"), "--out".into(), place(run)]
 }
 
 /// Request to write a file for other programs.
@@ -296,6 +342,10 @@ pub(super) fn is_of_request(run: &str, words: &[String]) -> bool {
     name(run).is_ok()
         && match words[..] {
             ["run", "--resume", of, ref rest @ ..] => of == place && pairs(rest, &["--generations", "--threads"], &[]),
+            ["run", "--from", of, "--out", out] => {
+                of.strip_prefix(EXPORTS).and_then(|of| of.strip_prefix('/')).is_some_and(|of| name(of).is_ok())
+                    && out == place
+            }
             ["run", of, ref rest @ .., "--out", out] => {
                 let numbers = ["--seed", "--generations", "--threads"];
                 experiment(of).is_ok() && out == place && pairs(rest, &numbers, &["--condition", "--strategy", "--set"])
@@ -351,6 +401,17 @@ mod tests {
         );
         let named = request(r#"{"experiment":"a","seeds":[3],"name":"mine"}"#);
         assert_eq!(named.run(3).unwrap(), "mine");
+    }
+
+    #[test]
+    fn a_saved_run_is_one_of_the_exports() {
+        let words = continued("a-1.run.json", "a-1.2");
+        assert_eq!(words.join(" "), "run --from exports/a-1.run.json --out runs/a-1.2");
+        assert!(is_of_request("a-1.2", &words) && !is_of_request("a-1", &words));
+        for wrong in ["/etc/x", "exports/../x", "exports//x", "exports/-x", "exportsx"] {
+            let words: Vec<String> = ["run", "--from", wrong, "--out", "runs/a"].map(str::to_owned).into();
+            assert!(!is_of_request("a", &words), "{wrong}");
+        }
     }
 
     #[test]

@@ -34,11 +34,11 @@ const MAX_BODY: usize = 4 << 20;
 const BODY_TIME: Duration = Duration::from_secs(10);
 /// Permissions of the laboratory's own page.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; \
-                      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+                      connect-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 /// Permissions of pages in the folder. They have no origin, so that their scripts reach neither the token nor the server.
 const SANDBOX: &str = "sandbox allow-scripts allow-downloads allow-forms allow-modals allow-popups; default-src 'none'; \
                        script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; \
-                       img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+                       img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
 
 /// Everything that a connection needs.
 #[derive(Clone)]

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::live::champion::champions;
 use crate::live::http::answer::event;
 use crate::live::http::paced::INTERVAL;
-use crate::live::page::{self, Use};
+use crate::live::page::{self, Chosen, Use};
 use crate::live::run_mark::{FileMark, RunMark};
 use crate::live::serve::state::{NamedRun, Question, Shared, Unavailable};
 use crate::run::catch_panic::catch_printed_panic;
@@ -147,7 +147,7 @@ impl<'s, 'e> Publisher<'s, 'e> {
         self.page = None;
         let module = module(&run.plan).map_err(failed)?;
         let used = Use::Served { run: &run.named.name };
-        let page = page::html(laboratory, (&run.plan, directory), &[], module, used);
+        let page = page::html(laboratory, (&run.plan, directory), Chosen::default(), module, used);
         if RunMark::read(directory).as_ref() != Some(&run.named.mark) {
             return Err(unavailable("Another run replaces this one."));
         }

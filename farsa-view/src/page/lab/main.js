@@ -1,11 +1,12 @@
-// Places of the page: `#/`, `#/experiment/NAME` and `#/run/NAME`.
+// Places of the page: `#/`, `#/experiment/NAME`, `#/run/NAME` and `#/trial/RUN`.
 
 import { experiment } from "./experiment.js";
 import { h, show } from "./parts.js";
 import { run } from "./run.js";
 import { start } from "./start.js";
+import { trial } from "./trial.js";
 
-const PLACES = { "": start, experiment, run };
+const PLACES = { "": start, experiment, run, trial };
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
 function paint() {

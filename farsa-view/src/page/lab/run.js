@@ -9,7 +9,7 @@ const FORMATS = [
   ["c-integers", "Controller in C99, integers"], ["rust", "Controller in Rust"], ["safetensors", "Weights (safetensors)"],
   ["genotype", "Genes (.gen)"], ["starts", "Starts of trials (JSON)"], ["mjcf", "Robot and scene (MJCF)"], ["urdf", "Robot (URDF)"],
 ];
-const PAGES = { replay: "Replay of recorded trials", live: "Interactive page: lesions and evolution", report: "Report" };
+const PAGES = { replay: "Replay of recorded trials", report: "Report" };
 
 export async function run(name, signal, isHere) {
   const [list, data] = await Promise.all([read("/api/list"), read("/api/run", { name })]);
@@ -193,12 +193,31 @@ class RunPage {
       const button = h("button", { id: `make-${kind}`, onclick: () => this.make(kind, button) }, text);
       return button;
     });
+    this.generation ||= h("input", { id: "generation", inputmode: "numeric", autocomplete: "off", placeholder: "the champion's", size: 9 });
+    this.individual ||= h("input", { id: "individual", inputmode: "numeric", autocomplete: "off", placeholder: "the best", size: 6 });
+    this.trialButton ||= this.button("Open the trial", "make-live", () => this.openTrial());
+    if (!this.makers.includes(this.trialButton)) this.makers.unshift(this.trialButton);
     this.pages.replaceChildren(...[
-      h("h2", { id: "pages" }, "Pages"),
-      this.readOnly ? null : h("div", { class: "stack" }, this.makers),
+      h("h2", { id: "pages" }, "Trials and pages"),
+      this.readOnly ? null : h("div", { class: "bar" }, field("Generation", this.generation), field("Individual", this.individual), this.trialButton),
+      this.readOnly ? null : h("div", { class: "stack" }, this.makers.slice(1)),
       this.data.pages.length ? h("ul", { class: "files" }, this.data.pages.map((file) =>
-        h("li", {}, h("a", { href: `/files/pages/${encodeURIComponent(file)}`, target: "_blank", rel: "noopener" }, file)))) : null,
+        h("li", {}, file === `live-${this.name}.html` ? h("a", { href: `#/trial/${encodeURIComponent(this.name)}` }, file)
+          : h("a", { href: `/files/pages/${encodeURIComponent(file)}`, target: "_blank", rel: "noopener" }, file)))) : null,
     ].filter(Boolean));
+  }
+
+  // A page with the agent itself: another generation or individual, other settings, lesions, evolution.
+  async openTrial() {
+    const whole = (input, what) => {
+      const given = input.value.trim();
+      if (given && !/^\d{1,9}$/.test(given)) throw new Error(`${what} is a whole number from 0`);
+      return given ? Number(given) : null;
+    };
+    const [generation, individual] = [whole(this.generation, "the generation"), whole(this.individual, "the individual")];
+    const { command: line } = await change("/api/page", { kind: "live", runs: [this.name], generations: generation === null ? [] : [generation], individual });
+    note(line);
+    location.hash = `#/trial/${encodeURIComponent(this.name)}`;
   }
 
   make(kind, button) {

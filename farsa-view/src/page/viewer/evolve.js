@@ -21,7 +21,7 @@ function paintFitness(svg, rows) {
 const shortest = (x) => (x === null ? "failed" : `${+x.toPrecision(4)}`);
 
 // The panel of evolution. `open` creates an agent with a state, `show` shows named individuals.
-function evolutionOf({live: {about, standing, served}}, open, show) {
+function evolutionOf({live: {about, script, standing, served}}, open, show) {
 	const rows = [...about.history];
 	const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
 	svg.setAttribute("viewBox", "0 0 300 60");
@@ -52,10 +52,18 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 		said.replaceChildren(`Generation ${number}: `, make("b", "best", `best ${shortest(best)}`), ", ", make("b", "mean", `mean ${shortest(mean)}`));
 	}
 
+	const begun = () => new Response(unpacked(standing)).json();
+
+	// Identifies the state after the last generation.
+	async function mark() {
+		if (workers) return workers[0].ask({do: "state"});
+		return firstWorker("once", {script: {...script, standing: await begun()}, request: {do: "state"}});
+	}
+
 	// Runs a generation: each worker evaluates a part, and all receive all outcomes.
 	async function generation() {
 		if (!workers) {
-			const from = await new Response(unpacked(standing)).json();
+			const from = await begun();
 			workers = await Promise.all(list(max(1, min(8, navigator.hardwareConcurrency || 1)), () => open(from)));
 		}
 		const before = performance.now();
@@ -116,5 +124,5 @@ function evolutionOf({live: {about, standing, served}}, open, show) {
 	}
 
 	tell();
-	return {run, rows};
+	return {run, rows, mark: standing && !served ? mark : null};
 }

@@ -26,13 +26,23 @@ function inWorker() {
 			return module = await WebAssembly.compileStreaming(new Response(unpacked(packed), {headers})).catch(refused);
 		},
 		take: (rest) => void ({module} = rest),
-		open: ({script}) => void (acts.session = opened(script)),
+		open: ({script}) => void Object.assign(acts, {script, session: opened(script), changed: null}),
+		// The session of a request: the run's, or one with the same individuals and another configuration.
+		of({request, config}) {
+			if (request.do === "add") {
+				acts.script.individuals.push(request.individual);
+				acts.changed = null;
+			}
+			if (!config) return acts.session(request);
+			if (acts.changed?.config !== config) acts.changed = {config, answer: opened({...acts.script, config})};
+			return acts.changed.answer(request);
+		},
 		// Opens a temporary session.
 		once: ({script, request}) => opened(script)(request),
-		ask: ({request}) => acts.session(request),
+		ask: (given) => acts.of(given),
 		// The ticks in each phase and the bodies at the first tick.
-		brief({request}) {
-			const {film, success, fitness, error} = acts.session(request);
+		brief(given) {
+			const {film, success, fitness, error} = acts.of(given);
 			if (error) return {error};
 			const {ticks, bodies, channels, blocks, position_origin: origin, position_unit: unit} = film;
 			const {buffer} = bytesOf(film.data);
@@ -45,8 +55,8 @@ function inWorker() {
 			return {success, fitness, bodies, starts, words, counts, step: ticks > 1 ? (times[ticks - 1] - times[0])/(ticks - 1) : times[0]};
 		},
 		// Without the recording.
-		earned({request}) {
-			const {success, fitness, error} = acts.session(request);
+		earned(given) {
+			const {success, fitness, error} = acts.of(given);
 			return {success, fitness, error};
 		},
 	};
@@ -88,8 +98,8 @@ async function agentOf(module, script) {
 	return {ask: (request) => send("ask", {request})};
 }
 
-// The answer of the first worker, with `act` "earned" without a recording.
-const answerOf = (request, act = "ask") => firstWorker(act, {request});
+// The answer of the first worker, with `act` "earned" without a recording, under another configuration if one is given.
+const answerOf = ({config, ...request}, act = "ask") => firstWorker(act, {request, config});
 
 // The trial of an answer for the player.
 function trialOf(page, {film}, index, pushes = []) {
@@ -113,9 +123,9 @@ async function liveOf(page) {
 	// A trial that broke down has no fitness.
 	const earned = individuals.at(-1).trials.map(({fitness}) => fitness ?? -Infinity);
 	const best = max(0, earned.indexOf(max(...earned)));
-	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), moves: [], pushes: [], watched: null};
+	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), settings: new Map(), moves: [], pushes: [], watched: null};
 	// Changes in the address follow when the whole trial is shown.
-	Object.assign(state, heldBy(momentOf(), page.live.about, state.individual), {changes: new Map()});
+	Object.assign(state, heldBy(momentOf(), page.live.about, state.individual), {changes: new Map(), settings: new Map()});
 	const request = {do: "film", ...asked(state), lesion: ""};
 	const module = firstWorker("compile", {packed}).catch((error) => {
 		// A function that returns a vector.
@@ -139,15 +149,18 @@ function trialNamed(name, {trials}) {
 }
 
 // The agent, trial and changes of an address, or null if the page does not hold them.
-function heldBy({trial: name, agent, change = ""}, about, last) {
+function heldBy({trial: name, agent, change = "", set = ""}, about, last) {
 	const [individual, trial] = [+(agent ?? last), trialNamed(name, about)];
 	const changes = new Map(change.split(",").filter(Boolean).map((part) => [...part.split("="), ""].slice(0, 2)));
-	return trial && about.individuals[individual] ? {individual, trial, changes} : null;
+	const settings = new Map(set.split(";").filter(Boolean).map((part) => [part.split("=")[0], part.slice(part.indexOf("=") + 1)]));
+	return trial && about.individuals[individual] ? {individual, trial, changes, settings} : null;
 }
 
 const asked = ({individual, trial, watched}) => ({individual, trial, watched});
 // As `farsa test --lesion` takes it.
 const listOf = ({changes}) => [...changes].map(([part, value]) => (value === "" ? part : `${part}=${value}`)).join(",");
+// The configuration with the changed settings.
+const configOf = ({live: {script: {config}}}, {settings}) => configWith(config, settingsOf(config), settings);
 const bare = (title) => title.replace(/ \[[^\]]*\]$/, "");
 const KINDS = ["sensor", "neuron", "output"];
 
@@ -191,17 +204,17 @@ function controlsOf({live: {script, about: {robots}}}, acts) {
 		generation: pick("Generation", [], (place) => acts.change({individual: +place})),
 		trial: pick("Trial that is run", [], (number) => number !== "" && acts.change({trial: {number: +number}})),
 		robot: pick("Robot that is recorded", [], (robot) => acts.change({watched: robot === "" ? null : +robot})),
-		fresh: button("New start", acts.fresh), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
+		fresh: button("New start", acts.fresh), random: button("Random genome", acts.random), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
 		move: Object.assign(button("Move bodies"), {disabled: true}), push: Object.assign(button("Push bodies"), {disabled: true}), body: pick("Body that keys move or push", [], null),
 		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), behavior: button("Behavior", () => acts.summarize(100)), summary: make("div"), verify: button("Verify", acts.verify),
-		earned: make("p"), status: make("p", "soft"),
+		configuration: make("pre", "", script.config), earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
-	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh"), make("p", "", "Change: ", own.part),
+	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh", "random"), make("p", "", "Change: ", own.part),
 		bar("parts", "value", "apply", "cut"), bar("noise", "move", "push", "body", "undo"), own.chips, bar("hundred", "behavior", "verify"), own.earned, own.status, own.summary,
-		make("details", "", make("summary", "", "Configuration"), make("pre", "", script.config)));
+		acts.form.element, make("details", "", make("summary", "", "Configuration"), own.configuration));
 	panel.id = "live";
 	own.status.setAttribute("role", "status");
 	own.behavior.title = "Time in each phase and success by start, in 100 fresh trials";
@@ -229,7 +242,7 @@ async function hundred(individual, changed, counted, say) {
 		const [key, whose] = [`${individual} ${JSON.stringify(change)}`, change === changed ? "with the change" : "intact"];
 		const by = moves?.[0] || pushes?.[0] ? 1 : 10;
 		for (let [first, successes, failed] = [0, 0, 0]; !counted.has(key); first += by) {
-			const request = by > 1 ? {do: "fresh", individual, lesion, seed: 1, first, count: by}
+			const request = by > 1 ? {do: "fresh", individual, lesion, config: change.config, seed: 1, first, count: by}
 				: {do: "film", individual, trial: {fresh: {number: first, seed: 1}}, ...change};
 			const answer = await answerOf(request, by > 1 ? undefined : "earned");
 			const more = by > 1 ? answer.successes : answer.success;
@@ -256,16 +269,21 @@ function offerParts(own, kinds) {
 // The buttons that undo a change.
 function chipsOf(state, show) {
 	const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
+	const set = [...state.settings].map(([key, value]) => button(`${key} = ${value} ×`, () => {
+		state.settings = new Map([...state.settings].filter(([other]) => other !== key));
+		show();
+	}));
 	const hands = ["moves", "pushes"].flatMap((kind) => state[kind].map((one) => button(`${one.what} at ${one.time.toFixed(2)} s ×`, () => (state[kind] = state[kind].filter((other) => other !== one), show()))));
-	return [...lesions, ...hands];
+	return [...lesions, ...set, ...hands];
 }
 
 // The changes as a request has them, or none.
-function changesOf(state) {
+function changesOf(page, state) {
 	const moves = state.moves.map(({step, body, position, rotation}) => ({step, body, position, rotation}));
 	const pushes = state.pushes.map(({steps, body, point, force}) => ({steps, body, point, force}));
 	const lesion = listOf(state);
-	return lesion || moves[0] || pushes[0] ? {lesion, moves, pushes} : null;
+	const config = state.settings.size ? configOf(page, state) : undefined;
+	return lesion || moves[0] || pushes[0] || config ? {lesion, moves, pushes, config} : null;
 }
 
 // Updates the controls.
@@ -279,16 +297,16 @@ function tellControls(own, state, about) {
 	own.trial.value = fresh ? "" : state.trial.number;
 	own.generation.value = state.individual;
 	own.verify.disabled = !!fresh || !known.length || state.watched !== null;
-	own.undo.disabled = !changesOf(state);
+	own.undo.disabled = !state.changes.size && !state.settings.size && !state.moves[0] && !state.pushes[0];
 }
 
 // Names the agent, the trial and the changes in the address, but no moved or pushed bodies.
 function addressed(player, state, about, change) {
 	const last = about.individuals.length - 1;
-	const keyOf = ({individual, trial, changes}) => JSON.stringify([individual, trial, [...changes]]);
+	const keyOf = ({individual, trial, changes, settings}) => JSON.stringify([individual, trial, [...changes], [...settings]]);
 	Object.defineProperty(player, "address", {get() {
 		const {individual: agent, trial: {fresh, number}} = state;
-		return {...agent === last ? {} : {agent}, trial: fresh ? `fresh-${fresh.number}` : number, ...state.changes.size ? {change: listOf(state)} : {}};
+		return {...agent === last ? {} : {agent}, trial: fresh ? `fresh-${fresh.number}` : number, ...state.changes.size ? {change: listOf(state)} : {}, ...state.settings.size ? {set: [...state.settings].map((pair) => pair.join("=")).join(";")} : {}};
 	}});
 	player.choose = async (moment) => {
 		const held = heldBy(moment, about, last);
@@ -298,9 +316,10 @@ function addressed(player, state, about, change) {
 }
 
 // Summarizes fresh trials, with the changes if there are any.
-async function behaviorOf(count, state, about, own, change) {
+async function behaviorOf(count, page, state, own, change) {
+	const {about} = page.live;
 	own.behavior.disabled = true;
-	const request = {individual: state.individual, watched: state.watched, ...changesOf(state) ?? {lesion: ""}};
+	const request = {individual: state.individual, watched: state.watched, ...changesOf(page, state) ?? {lesion: ""}};
 	// A mark opens a trial of this summary, also after other changes.
 	const kept = {...state, changes: new Map(state.changes)};
 	const open = (number) => change({...kept, changes: new Map(kept.changes), trial: {fresh: {number, seed: 1}}});
@@ -312,10 +331,10 @@ async function behaviorOf(count, state, about, own, change) {
 }
 
 // Runs fresh trials with the changes and without.
-async function testOf(state, own, counted) {
+async function testOf(page, state, own, counted) {
 	const tell = (text) => (own.earned.textContent = text);
 	own.hundred.disabled = true;
-	const found = await hundred(state.individual, changesOf(state), counted, tell).catch((error) => tell(error.message));
+	const found = await hundred(state.individual, changesOf(page, state), counted, tell).catch((error) => tell(error.message));
 	own.hundred.disabled = false;
 	return found;
 }
@@ -336,12 +355,19 @@ function attach(page, state, whole, player, open) {
 		Object.assign(state, what);
 		return show();
 	};
-	const undo = () => (state.changes.clear(), (state.moves = []), (state.pushes = []), show());
+	// A part that cannot be changed so is not changed.
+	const settle = (settings) => {
+		const before = {...state};
+		state.settings = settings;
+		return show(before);
+	};
+	const undo = () => (state.changes.clear(), Object.assign(state, {settings: new Map(), moves: [], pushes: []}), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
-	const test = () => testOf(state, own, counted);
-	const own = controlsOf(page, {set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
+	const test = () => testOf(page, state, own, counted);
+	const form = settingsForm(settingsOf(page.live.script.config), settle);
+	const own = controlsOf(page, {form, random, set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
-	const summarize = (count) => behaviorOf(count, state, about, own, change);
+	const summarize = (count) => behaviorOf(count, page, state, own, change);
 
 	function choose(name) {
 		chosen = name;
@@ -352,17 +378,20 @@ function attach(page, state, whole, player, open) {
 	function marks() {
 		tellControls(own, state, about);
 		own.chips.replaceChildren(...chipsOf(state, show));
+		own.configuration.textContent = configOf(page, state);
 	}
 
 	// Runs the trial intact and with changes, on one clock.
 	async function show(before = {...state}) {
-		const [mine, changes, {pushes}] = [++turn, changesOf(state), state];
+		const [mine, changes, {pushes, settings}] = [++turn, changesOf(page, state), state];
 		marks();
 		say("runs ...");
 		try {
 			const intact = await answerOf({do: "film", ...asked(state), lesion: ""});
 			const changed = changes && await answerOf({do: "film", ...asked(state), ...changes});
 			if (mine !== turn) return;
+			if (settings.size) changed.film.name += `; with ${[...settings].map((pair) => pair.join(" = ")).join(", ")}`;
+			form.take(settings);
 			answer = intact;
 			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i, i ? pushes : [])));
 			player.show(page.trials[0], page.trials[1]);
@@ -395,12 +424,28 @@ function attach(page, state, whole, player, open) {
 		return found;
 	}
 
+	// Shows a random individual, the first of the run with another seed.
+	let seed = 0;
+	async function random() {
+		const {config} = page.live.script;
+		const own = +/^seed = (\d+)$/m.exec(config)?.[1];
+		seed += 1 + (seed + 1 === own);
+		say("draws ...");
+		try {
+			const script = {config: seeded(config, seed), individuals: [], newcomer: true};
+			const individual = await firstWorker("once", {script, request: {do: "individual", individual: 0}});
+			return await showMore([individual], [`, random of seed ${seed}`], "random");
+		} catch (error) {
+			return say(error.message);
+		}
+	}
+
 	// Shows the first of further individuals, with a name for each.
-	async function showMore(more, names) {
+	async function showMore(more, names, origin = "evolved") {
 		const place = about.individuals.length;
 		for (const [i, individual] of more.entries()) {
 			await answerOf({do: "add", individual});
-			about.individuals.push({generation: individual.generation, trials: [], name: names[i]});
+			about.individuals.push({generation: individual.generation, individual: individual.individual, trials: [], name: names[i], origin});
 		}
 		return change({individual: place, trial: {number: state.trial.number ?? 0}});
 	}
@@ -412,7 +457,9 @@ function attach(page, state, whole, player, open) {
 	answerOf({do: "names"}).then((kinds) => offerParts(own, kinds), (error) => say(error.message));
 	choose("");
 	marks();
-	const {run, rows} = evolutionOf(page, open, showMore);
-	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), test, summarize, verify};
+	const {run, rows, mark} = evolutionOf(page, open, showMore);
+	const kept = keeping(page, state, about, mark, say);
+	form.element.before(kept.element);
+	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), settle: (some) => settle(new Map(Object.entries(some))), random, keep: kept.act, test, summarize, verify};
 	return begin;
 }

@@ -106,7 +106,7 @@ function listen(acts) {
 	}
 	document.onkeydown = (event) => {
 		const {target, key} = event;
-		const busy = target.matches("select") || (key === " " && target.matches("button")) || $("keys").open;
+		const busy = target.matches("select, input:not([type=range])") || (key === " " && target.matches("button")) || $("keys").open;
 		if (busy || event.ctrlKey || event.metaKey || event.altKey || !acts[key]) return;
 		event.preventDefault();
 		acts[key][0](event);

@@ -47,21 +47,31 @@ void main() {
 	gl_Position = camera*vec4(at, 1);
 }`, `precision highp sampler2DShadow;
 in vec3 at, facing, lit;
-uniform sampler2DShadow shadows; uniform vec4 color; uniform vec3 sun, eye, fog, middle; uniform float grid, reach, plain;
+uniform sampler2DShadow shadows; uniform highp sampler2D depths; uniform vec4 color; uniform vec3 sun, eye, fog, middle; uniform float grid, reach, plain;
 out vec4 pixel;
 float lines(float step) {
 	vec2 p = at.xy/step, d = max(fwidth(p), 1e-6), q = abs(fract(p - .5) - .5)/d;
 	return (1. - min(min(q.x, q.y), 1.))*clamp(1.4 - 3.*max(d.x, d.y), 0., 1.);
 }
+// Evenly spread places of a disk.
+vec2 spread(int i, float count) { float r = sqrt((float(i) + .5)/count), a = float(i)*2.39996; return r*vec2(cos(a), sin(a)); }
+// The share of the sun that is seen. Its half-shadow is as wide as what hides it is far.
+float seen() {
+	if (any(greaterThan(abs(lit - .5), vec3(.5)))) return 1.;
+	float sum = 0., count = 0.;
+	for (int i = 0; i < 12; i++) {
+		float d = texture(depths, lit.xy + .02*spread(i, 12.)).r;
+		if (d < lit.z - .001) { sum += d; count++; }
+	}
+	float wide = count == 0. ? .0012 : clamp((lit.z - sum/count)*.35, .0012, .02), open = 0.;
+	for (int i = 0; i < 24; i++) open += texture(shadows, lit + vec3(wide*spread(i, 24.), 0));
+	return open/24.;
+}
 void main() {
 	vec3 n = normalize(length(facing) > .1 ? facing : cross(dFdx(at), dFdy(at))), to = normalize(eye - at);
 	if (dot(n, to) < 0.) n = -n;
-	float open = 1.;
-	if (all(lessThan(abs(lit - .5), vec3(.5)))) {
-		open = 0.;
-		for (int i = 0; i < 9; i++) open += texture(shadows, lit + vec3(i%3 - 1, i/3 - 1, 0)*.0012)/9.;
-	}
-	float face = max(dot(n, sun), 0.)*mix(.25, 1., open);
+	float face = max(dot(n, sun), 0.);
+	if (face > 0.) face *= mix(.25, 1., seen());
 	// A little light from the eye keeps the side away from the sun readable.
 	vec3 c = color.rgb*mix(.38 + .1*n.z + .18*dot(n, to) + .36*face, 1., plain);
 	if (grid == 0.) c += (1. - plain)*.12*face*pow(max(dot(n, normalize(sun + to)), 0.), 40.);
@@ -103,8 +113,15 @@ function shadowsOf(gl) {
 	const [map, frame] = [gl.createTexture(), gl.createFramebuffer()];
 	gl.bindTexture(gl.TEXTURE_2D, map);
 	gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, 1024, 1024);
-	gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
-	gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
+	// The map is compared in the first unit and read in the second.
+	const samplers = [[gl.LINEAR, gl.COMPARE_REF_TO_TEXTURE], [gl.NEAREST, gl.NONE]].map(([filter, compare]) => {
+		const sampler = gl.createSampler();
+		for (const end of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.samplerParameteri(sampler, end, filter);
+		for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.samplerParameteri(sampler, side, gl.CLAMP_TO_EDGE);
+		gl.samplerParameteri(sampler, gl.TEXTURE_COMPARE_MODE, compare);
+		return sampler;
+	});
+	samplers.forEach((sampler, i) => gl.bindSampler(i, sampler));
 	gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
 	gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, map, 0);
 	gl.drawBuffers([gl.NONE]);
@@ -213,9 +230,10 @@ class Scene {
 		this.places = {};
 		this.program = programOf(gl);
 		gl.useProgram(this.program);
-		this.solids = [16, 32].map((n) => Object.fromEntries(Object.entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
+		this.solids = [16, 32, 96].map((n) => Object.fromEntries(Object.entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
 		this.ribbons = new WeakMap();
 		this.shadows = shadowsOf(gl);
+		gl.uniform1i(gl.getUniformLocation(this.program, "depths"), 1);
 		gl.enable(gl.DEPTH_TEST);
 		gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
 	}
@@ -231,7 +249,7 @@ class Scene {
 
 	mesh(kind, origin, rotation, size, color, stretch = 0) {
 		const {gl} = this;
-		const {array, count} = this.solids[+(size[0] > this.coarse)][kind];
+		const {array, count} = this.solids[(size[0] > this.coarse) + (size[0] > 4*this.coarse)][kind];
 		this.set({origin, rotation, size, color, stretch});
 		gl.bindVertexArray(array);
 		gl.drawArrays(gl.TRIANGLES, 0, count);
@@ -275,9 +293,17 @@ class Scene {
 		// Half the height of the view [m].
 		const seen = top ? half : distance*TAN;
 		const middle = middleOf(boundsOf(trial.balls));
-		// Up to a radius of 20 pixels the error of a coarse mesh is below half a pixel.
+		// Up to a radius of 20 pixels the error of a coarse mesh is below half a pixel, and so is that of a finer one up to 80.
 		this.coarse = 40*seen/this.canvas.height;
 		Object.assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
+	}
+
+	bindMap(map) {
+		const {gl} = this;
+		for (const unit of [1, 0]) {
+			gl.activeTexture(gl.TEXTURE0 + unit);
+			gl.bindTexture(gl.TEXTURE_2D, map);
+		}
 	}
 
 	drawShadows(placed) {
@@ -285,7 +311,7 @@ class Scene {
 		gl.disable(gl.BLEND);
 		gl.depthMask(true);
 		gl.depthFunc(gl.LESS);
-		gl.bindTexture(gl.TEXTURE_2D, null);
+		this.bindMap(null);
 		gl.bindFramebuffer(gl.FRAMEBUFFER, this.shadows.frame);
 		gl.viewport(0, 0, 1024, 1024);
 		gl.clear(gl.DEPTH_BUFFER_BIT);
@@ -297,7 +323,7 @@ class Scene {
 	drawShapes(placed) {
 		const {gl} = this;
 		gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-		gl.bindTexture(gl.TEXTURE_2D, this.shadows.map);
+		this.bindMap(this.shadows.map);
 		gl.viewport(0, 0, this.canvas.width, this.canvas.height);
 		gl.clearColor(...paint("sky"), 1);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);

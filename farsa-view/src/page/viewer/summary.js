@@ -78,7 +78,7 @@ async function summarized(count, request, whose, place, open) {
 	const text = failed === count ? `all ${count} fresh trials broke down` : `${share}, mean fitness ${shortest(mean)}${failed ? `, ${failed} broke down` : ""}`;
 	const [phases, starts] = [phasesOf(trials), startsOf(trials)];
 	place.replaceChildren(
-		make("p", "", `${whose}${request.lesion || request.moves || request.pushes ? "With the change" : "Intact"}: ${text}.`),
+		make("p", "", `${whose}${request.lesion || request.moves ? "With the change" : "Intact"}: ${text}.`),
 		...phases[0] ? [phaseTable(phases, count)] : [],
 		...starts ? startMap(trials, starts, open) : [make("p", "soft", "All trials start alike.")],
 	);

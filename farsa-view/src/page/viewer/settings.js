@@ -1,0 +1,72 @@
+// The settings of the run as a form. Trials are run again with changed ones.
+
+// The settings in the text of a configuration, each with the number of its line. Those of a strategy change no trial.
+function settingsOf(config) {
+	const found = [];
+	let [section, about, inDefinition] = ["", "", false];
+	config.split("\n").forEach((line, at) => {
+		const [, name, value] = /^([\w-]+) = (.*)$/.exec(line) ?? [];
+		if (inDefinition) inDefinition = !line.endsWith("'''");
+		else if (value === "'''") inDefinition = true;
+		else if (line.startsWith("# ")) about = line.slice(2);
+		else if (line.startsWith("[")) section = line.slice(1, -1);
+		else if (name && section && !/^(evolution|strategy)\b/.test(section)) {
+			const [, doc, allowed] = /^(.*) \[(.*)\]$/.exec(about) ?? [null, about, ""];
+			found.push({key: `${section}.${name}`, section, name, value, at, doc, allowed});
+		}
+	});
+	return found;
+}
+
+// A configuration with other values of some settings.
+function configWith(config, settings, changed) {
+	const lines = config.split("\n");
+	for (const {key, name, at} of settings) if (changed.has(key)) lines[at] = `${name} = ${changed.get(key)}`;
+	return lines.join("\n");
+}
+
+// The configuration with another seed, which precedes the settings.
+function seeded(config, seed) {
+	const lines = config.split("\n");
+	const first = settingsOf(config)[0]?.at ?? lines.length;
+	lines[lines.slice(0, first).findLastIndex((line) => /^seed = \d+$/.test(line))] = `seed = ${seed}`;
+	return lines.join("\n");
+}
+
+// The row of a setting. A press of Enter applies all.
+function settingRow({key, name, value, doc, allowed}, apply) {
+	const field = allowed.startsWith("true or false") ? pick(key, [["true", "true"], ["false", "false"]], () => {}) : make("input");
+	field.setAttribute("aria-label", key);
+	field.value = value;
+	field.spellcheck = false;
+	const row = make("label", "setting", make("span", "", name), field, make("small", "soft", `${doc} [${allowed}]`));
+	const mark = () => row.classList.toggle("changed", field.value.trim() !== value);
+	field.onkeydown = (event) => event.key === "Enter" && (event.preventDefault(), apply());
+	field.addEventListener("input", mark);
+	const set = (to) => ((field.value = to ?? value), mark());
+	return {key, row, field, set, words: `${key} ${doc}`.toLowerCase(), given: () => field.value.trim(), value};
+}
+
+// The form. `act` receives the changed settings by their keys.
+function settingsForm(settings, act) {
+	const rows = settings.map((setting) => settingRow(setting, () => apply()));
+	const given = () => new Map(rows.filter((one) => one.given() !== one.value).map((one) => [one.key, one.given()]));
+	const apply = () => act(given());
+	const groups = [...new Set(settings.map(({section}) => section))].map((section) =>
+		make("details", "group", make("summary", "", section), ...rows.filter((_, i) => settings[i].section === section).map(({row}) => row)));
+	const search = Object.assign(make("input"), {type: "search", placeholder: "gravity, friction, noise ..."});
+	search.setAttribute("aria-label", "Search settings");
+	search.oninput = () => {
+		const words = search.value.toLowerCase().split(/\s+/);
+		for (const {row, words: own} of rows) row.hidden = !words.every((word) => own.includes(word));
+		for (const group of groups) {
+			group.hidden = ![...group.children].some((one) => one.matches(".setting:not([hidden])"));
+			group.open = !!search.value.trim();
+		}
+	};
+	const element = make("details", "", make("summary", "", "Settings"), search, ...groups,
+		make("div", "bar", Object.assign(button("Run with these settings", apply), {id: "apply"}), button("Original settings", () => act(new Map()))));
+	element.id = "settings";
+	element.hidden = !rows[0];
+	return {element, take: (changed) => rows.forEach(({key, set}) => set(changed.get(key)))};
+}
