@@ -79,7 +79,7 @@ function survey(trial, fromAbove) {
 	const [root] = fromAbove ? [] : moving.filter((m) => !m.thing);
 	const parts = root ? focus.map((ball) => ({...ball, at: sub(ball.at, trial.pose(ball.t, root.body).position)})) : focus;
 	const travels = spanOf(focus) > 2.5*spanOf(parts) ? {body: root.body, balls: parts} : null;
-	Object.assign(trial, {balls, focus, floors, moving, trails, travels, has, force: forces[floor(forces.length*0.95)] || 1});
+	Object.assign(trial, {balls, bounds: boundsOf(balls), focus, floors, moving, trails, travels, has, force: forces[floor(forces.length*0.95)] || 1});
 }
 
 // One camera for both views, so that trials are compared from the same viewpoint.

@@ -63,7 +63,10 @@ float seen() {
 		float d = texture(depths, lit.xy + .02*spread(i, 12.)).r;
 		if (d < lit.z - .001) { sum += d; count++; }
 	}
-	float wide = count == 0. ? .0012 : clamp((lit.z - sum/count)*.35, .0012, .02), open = 0.;
+	// Far from the edge of a shadow.
+	if (count == 0.) return texture(shadows, lit);
+	if (count == 12.) return 0.;
+	float wide = clamp((lit.z - sum/count)*.35, .0012, .02), open = 0.;
 	for (int i = 0; i < 24; i++) open += texture(shadows, lit + vec3(wide*spread(i, 24.), 0));
 	return open/24.;
 }
@@ -227,13 +230,14 @@ class Scene {
 
 	build() {
 		const {gl} = this;
-		this.places = {};
 		this.program = programOf(gl);
 		gl.useProgram(this.program);
+		const names = list(gl.getProgramParameter(this.program, gl.ACTIVE_UNIFORMS), (i) => gl.getActiveUniform(this.program, i).name);
+		this.places = Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(this.program, name)]));
 		this.solids = [16, 32, 96].map((n) => Object.fromEntries(Object.entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
 		this.ribbons = new WeakMap();
 		this.shadows = shadowsOf(gl);
-		gl.uniform1i(gl.getUniformLocation(this.program, "depths"), 1);
+		gl.uniform1i(this.places.depths, 1);
 		gl.enable(gl.DEPTH_TEST);
 		gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
 	}
@@ -241,16 +245,20 @@ class Scene {
 	set(values) {
 		const {gl, places} = this;
 		for (const [name, value] of Object.entries(values)) {
-			const at = places[name] ??= gl.getUniformLocation(this.program, name);
+			const at = places[name];
 			if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
 			else gl[`uniform${value.length || 1}fv`](at, value.length ? value : [value]);
 		}
 	}
 
 	mesh(kind, origin, rotation, size, color, stretch = 0) {
-		const {gl} = this;
+		const {gl, places} = this;
 		const {array, count} = this.solids[(size[0] > this.coarse) + (size[0] > 4*this.coarse)][kind];
-		this.set({origin, rotation, size, color, stretch});
+		gl.uniform3fv(places.origin, origin);
+		gl.uniform4fv(places.rotation, rotation);
+		gl.uniform3fv(places.size, size);
+		gl.uniform4fv(places.color, color);
+		gl.uniform1f(places.stretch, stretch);
 		gl.bindVertexArray(array);
 		gl.drawArrays(gl.TRIANGLES, 0, count);
 	}
@@ -278,7 +286,7 @@ class Scene {
 		if (this.gl.isContextLost()) return;
 		this.look(trial, tick, camera);
 		const {eye, middle, reach, placed} = this;
-		const far = 0.58*hypot(...sub(...boundsOf(trial.balls)));
+		const far = 0.58*hypot(...sub(...trial.bounds));
 		const light = product(parallel(far, far, 6*far), viewFrom(add(middle, mul(SUN, 3*far)), axesOf(SUN)));
 		this.set({camera: light, light, sun: SUN, eye, fog: paint("sky"), middle: camera.carried ?? middle, reach, plain: 0, grid: 0});
 		this.drawShadows(placed);
@@ -292,7 +300,7 @@ class Scene {
 		const {eye, lens} = camera.lens(this.canvas.width/this.canvas.height);
 		// Half the height of the view [m].
 		const seen = top ? half : distance*TAN;
-		const middle = middleOf(boundsOf(trial.balls));
+		const middle = middleOf(trial.bounds);
 		// Up to a radius of 20 pixels the error of a coarse mesh is below half a pixel, and so is that of a finer one up to 80.
 		this.coarse = 40*seen/this.canvas.height;
 		Object.assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
@@ -328,8 +336,9 @@ class Scene {
 		gl.clearColor(...paint("sky"), 1);
 		gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
 		const grid = rounded(this.camera.radius/8);
+		this.set({camera: this.matrix});
 		for (const item of placed) {
-			this.set({camera: this.matrix, grid: item.shape.role === "ground" && !item.wall ? grid : 0});
+			this.set({grid: item.shape.role === "ground" && !item.wall ? grid : 0});
 			// An area is in the floor and covers it.
 			gl.polygonOffset(...item.shape.role === "area" ? [-2, -8] : [0, 0]);
 			this.shape(item);
