@@ -200,6 +200,39 @@ fn an_experiment_is_made_run_stopped_resumed_and_tested() {
     pages_exports_and_trash(&lab, &here);
 }
 
+/// Keeps what an interactive page has made, under new names.
+#[cfg(unix)]
+fn keep(lab: &Lab, here: &Path) {
+    for (kind, expected) in [
+        ("configuration", "exports/follow-1.toml"),
+        ("script", "exports/follow-1.sh"),
+        ("genotype", "exports/follow-1-3.gen"),
+    ] {
+        let answer = lab.done("/api/keep", &json!({ "kind": kind, "run": "follow-1", "text": kind }));
+        assert_eq!(answer["file"], expected);
+        assert_eq!(fs::read_to_string(here.join(expected)).expect("a text"), kind);
+    }
+    // A page without a generation has no state, so the run evolves by its configuration.
+    let config = fs::read_to_string(here.join("runs/follow-1/config.toml")).expect("a text");
+    let config = config.replace("\ngenerations = 3010", "\ngenerations = 5");
+    let saved =
+        json!({ "format": "farsa-saved-run", "version": 1, "generation": 0, "state_crc32": 0, "config": config });
+    let request = json!({ "kind": "run", "run": "follow-1", "text": saved.to_string() });
+    let answer = lab.done("/api/keep", &request);
+    assert_eq!((&answer["file"], &answer["run"]), (&json!("exports/follow-1.run.json"), &json!("follow-1.2")));
+    assert_eq!(answer["command"], "farsa run --from exports/follow-1.run.json --out runs/follow-1.2");
+    assert_eq!(lab.until("follow-1.2", "finished")["done"], 5);
+    for (wrong, code) in [
+        (json!({ "kind": "script", "run": "follow-9", "text": "" }), 404),
+        (json!({ "kind": "script", "run": "../follow-1", "text": "" }), 400),
+        (json!({ "kind": "page", "run": "follow-1", "text": "" }), 400),
+        (json!({ "kind": "script", "run": "follow-1", "text": "", "file": "a" }), 400),
+    ] {
+        let (found, answer) = lab.post("/api/keep", &wrong);
+        assert_eq!(found, code, "{wrong}: {answer}");
+    }
+}
+
 /// Writes pages and exports of a finished run, and moves it away.
 #[cfg(unix)]
 fn pages_exports_and_trash(lab: &Lab, here: &Path) {
@@ -216,11 +249,13 @@ fn pages_exports_and_trash(lab: &Lab, here: &Path) {
         assert_eq!(answer["file"], expected, "{number}");
         assert!(here.join(expected).is_file());
     }
+    keep(lab, here);
     let run = lab.data("/api/run?name=follow-1");
     assert_eq!(run["pages"].as_array().map(Vec::len), Some(3), "{run}");
-    assert_eq!(run["exports"].as_array().map(Vec::len), Some(2), "{run}");
+    assert_eq!(run["exports"].as_array().map(Vec::len), Some(6), "{run}");
     let before = content(&here.join("runs/follow-1"));
     assert_eq!(lab.done("/api/trash", &json!({ "run": "follow-1" }))["moved"], ".trash/follow-1");
+    lab.done("/api/trash", &json!({ "run": "follow-1.2" }));
     assert_eq!(lab.data("/api/list")["runs"], json!([]));
     assert_eq!(content(&here.join(".trash/follow-1")).len(), before.len());
     lab.done("/api/trash", &json!({ "file": "follow.toml" }));

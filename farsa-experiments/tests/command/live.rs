@@ -294,7 +294,7 @@ fn evolution_continues_in_a_page_as_in_a_run() {
     }
 }
 
-/// What a page saves of its evolution.
+/// Content of the file that a page saves of its evolution.
 fn saved_run(live: &Value, mark: &Value) -> Value {
     let mut saved = json!({ "format": "farsa-saved-run", "version": 1, "config": live["script"]["config"] });
     for key in ["generation", "state_crc32"] {

@@ -122,6 +122,10 @@ pub(crate) struct WorldArgs {
     pub(crate) name: Option<String>,
 }
 
+/// Arguments that contradict the configuration of a saved page.
+pub(crate) const FIXED_BY_PAGE: [&str; 10] =
+    ["experiment", "condition", "set", "strategy", "seed", "population", "name", "config", "resume", "replications"];
+
 /// Parallel trials.
 #[derive(Args)]
 struct LanesArgs {

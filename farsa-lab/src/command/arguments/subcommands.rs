@@ -12,7 +12,7 @@ use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
 use crate::command::arguments::lab::LabArgs;
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
-use crate::command::arguments::shared::{VariantArgs, WorkerArgs, WorldArgs, whole};
+use crate::command::arguments::shared::{FIXED_BY_PAGE, VariantArgs, WorkerArgs, WorldArgs, whole};
 use crate::command::arguments::sweep::SweepArgs;
 use crate::error::Error;
 use crate::evaluation::protocols::selected_cases::CaseSelection;
@@ -164,17 +164,13 @@ pub(crate) struct RunArgs {
     /// Continue the run in a directory (generations may be added)
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) resume: Option<PathBuf>,
-    /// Repeat the generations of a page that were saved in a file, check that they are the same, and with --generations continue
+    /// Evolve a run that a page has saved, and check that it is equal
     #[arg(long, value_name = "FILE", conflicts_with_all = FIXED_BY_PAGE, value_hint = ValueHint::FilePath)]
     pub(crate) from: Option<PathBuf>,
     /// Write the summary as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
-
-/// Arguments that contradict the configuration of a saved page.
-const FIXED_BY_PAGE: [&str; 10] =
-    ["experiment", "condition", "set", "strategy", "seed", "population", "name", "config", "resume", "replications"];
 
 #[derive(Args)]
 pub(crate) struct BenchArgs {

@@ -20,6 +20,14 @@ function paintFitness(svg, rows) {
 
 const shortest = (x) => (x === null ? "failed" : `${+x.toPrecision(4)}`);
 
+const unpackedState = (standing) => new Response(unpacked(standing)).json();
+
+// Identifies the state after the last generation.
+async function markOf(script, standing, workers) {
+	if (workers) return workers[0].ask({do: "state"});
+	return firstWorker("once", {script: {...script, standing: await unpackedState(standing)}, request: {do: "state"}});
+}
+
 // The panel of evolution. `open` creates an agent with a state, `show` shows named individuals.
 function evolutionOf({live: {about, script, standing, served}}, open, show) {
 	const rows = [...about.history];
@@ -52,18 +60,10 @@ function evolutionOf({live: {about, script, standing, served}}, open, show) {
 		said.replaceChildren(`Generation ${number}: `, make("b", "best", `best ${shortest(best)}`), ", ", make("b", "mean", `mean ${shortest(mean)}`));
 	}
 
-	const begun = () => new Response(unpacked(standing)).json();
-
-	// Identifies the state after the last generation.
-	async function mark() {
-		if (workers) return workers[0].ask({do: "state"});
-		return firstWorker("once", {script: {...script, standing: await begun()}, request: {do: "state"}});
-	}
-
 	// Runs a generation: each worker evaluates a part, and all receive all outcomes.
 	async function generation() {
 		if (!workers) {
-			const from = await begun();
+			const from = await unpackedState(standing);
 			workers = await Promise.all(list(max(1, min(8, navigator.hardwareConcurrency || 1)), () => open(from)));
 		}
 		const before = performance.now();
@@ -124,5 +124,5 @@ function evolutionOf({live: {about, script, standing, served}}, open, show) {
 	}
 
 	tell();
-	return {run, rows, mark: standing && !served ? mark : null};
+	return {run, rows, mark: standing && !served ? () => markOf(script, standing, workers) : null};
 }

@@ -339,6 +339,36 @@ async function testOf(page, state, own, counted) {
 	return found;
 }
 
+// Returns a function that draws individuals. Each is the first of the run with another seed.
+function drawing({config}) {
+	let seed = 0;
+	return async () => {
+		seed += 1 + (seed + 1 === +/^seed = (\d+)$/m.exec(config)?.[1]);
+		const name = `, random of seed ${seed}`;
+		const script = {config: seeded(config, seed), individuals: [], newcomer: true};
+		return [await firstWorker("once", {script, request: {do: "individual", individual: 0}}), name];
+	};
+}
+
+// Adds individuals, with a name for each. Returns the place of the first.
+async function included({individuals}, more, names, origin) {
+	const place = individuals.length;
+	for (const [i, individual] of more.entries()) {
+		await answerOf({do: "add", individual});
+		individuals.push({generation: individual.generation, individual: individual.individual, trials: [], name: names[i], origin});
+	}
+	return place;
+}
+
+// Runs a trial without changes, and with them if there are any.
+async function runBoth(state, changes) {
+	const {settings} = state;
+	const intact = await answerOf({do: "film", ...asked(state), lesion: ""});
+	const changed = changes && await answerOf({do: "film", ...asked(state), ...changes});
+	if (settings.size) changed.film.name += `; with ${[...settings].map((pair) => pair.join(" = ")).join(", ")}`;
+	return [intact, changed];
+}
+
 // Attaches the panel. Returns a function that shows the whole trial.
 function attach(page, state, whole, player, open) {
 	const {about} = page.live;
@@ -387,10 +417,8 @@ function attach(page, state, whole, player, open) {
 		marks();
 		say("runs ...");
 		try {
-			const intact = await answerOf({do: "film", ...asked(state), lesion: ""});
-			const changed = changes && await answerOf({do: "film", ...asked(state), ...changes});
+			const [intact, changed] = await runBoth(state, changes);
 			if (mine !== turn) return;
-			if (settings.size) changed.film.name += `; with ${[...settings].map((pair) => pair.join(" = ")).join(", ")}`;
 			form.take(settings);
 			answer = intact;
 			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i, i ? pushes : [])));
@@ -419,36 +447,15 @@ function attach(page, state, whole, player, open) {
 	// Compares the trial with that of the run.
 	async function verify() {
 		await whole();
-		const found = verdictOf(state.trial, about.individuals[state.individual], answer);
-		say(found);
-		return found;
+		return say(verdictOf(state.trial, about.individuals[state.individual], answer));
 	}
 
-	// Shows a random individual, the first of the run with another seed.
-	let seed = 0;
-	async function random() {
-		const {config} = page.live.script;
-		const own = +/^seed = (\d+)$/m.exec(config)?.[1];
-		seed += 1 + (seed + 1 === own);
-		say("draws ...");
-		try {
-			const script = {config: seeded(config, seed), individuals: [], newcomer: true};
-			const individual = await firstWorker("once", {script, request: {do: "individual", individual: 0}});
-			return await showMore([individual], [`, random of seed ${seed}`], "random");
-		} catch (error) {
-			return say(error.message);
-		}
-	}
+	const draw = drawing(page.live.script);
+	const random = () => draw().then(([individual, name]) => showMore([individual], [name], "random"), (error) => say(error.message));
 
 	// Shows the first of further individuals, with a name for each.
-	async function showMore(more, names, origin = "evolved") {
-		const place = about.individuals.length;
-		for (const [i, individual] of more.entries()) {
-			await answerOf({do: "add", individual});
-			about.individuals.push({generation: individual.generation, individual: individual.individual, trials: [], name: names[i], origin});
-		}
-		return change({individual: place, trial: {number: state.trial.number ?? 0}});
-	}
+	const showMore = async (more, names, origin = "evolved") =>
+		change({individual: await included(about, more, names, origin), trial: {number: state.trial.number ?? 0}});
 
 	addressed(player, state, about, change);
 	const {put, push} = movable(page, player, state, own, show, say);
