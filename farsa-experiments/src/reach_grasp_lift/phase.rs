@@ -87,14 +87,17 @@ impl Phase {
     /// source defines the three conditions as a classification. Here a step can change the phase only once.
     #[must_use]
     pub fn next(self, seen: &Observation) -> Self {
-        let g = seen.g();
-        match self {
-            // g >= 0.5 means graspQ <= 5 ln 2 = 3.5 cm. The negation lets NaN pass, but the episode ends on NaN.
-            Self::Reach if !(seen.r() > g || g < 0.5) => Self::Grasp,
+        let is_over = match self {
+            Self::Reach => {
+                // g >= 0.5 means graspQ <= 5 ln 2 = 3.5 cm. The negation lets NaN pass, but the episode ends on NaN.
+                let g = seen.g();
+                !(g < 0.5 || seen.r() > g)
+            }
             // g > 0.7 means graspQ < 1.8 cm, and l > 0.6 means at least four phalanges.
-            Self::Grasp if g > 0.7 && seen.l() > 0.6 => Self::Lift,
-            stays => stays,
-        }
+            Self::Grasp => seen.g() > 0.7 && seen.l() > 0.6,
+            Self::Lift => false,
+        };
+        if is_over { self.following() } else { self }
     }
 
     /// The phase after this one, and the first after the last.

@@ -27,6 +27,20 @@ pub(crate) fn fast_lanes<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, work:
     largest.gt(S::splat(simd, fast))
 }
 
+/// Copies the words of a state that [`take_back`] reads. Of a group that is far in all lanes it reads one point.
+#[inline(always)]
+pub(crate) fn remember<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &[S], before: &mut [S]) {
+    let mut copy = |range: Range<usize>| before[range.clone()].copy_from_slice(&state[range]);
+    let first = model.first_point();
+    copy(0..model.first_command());
+    for group in &model.groups {
+        let start = group.points.start;
+        let end = if is_clear(simd, &state[first..], group) { start + 1 } else { group.points.end };
+        copy(first + POINT_WORDS * start..first + POINT_WORDS * end);
+    }
+    copy(first + POINT_WORDS * model.points..state.len());
+}
+
 /// Returns the lanes that do not make a second half to their state before it.
 #[inline(always)]
 pub(crate) fn take_back<S: Scalar>(

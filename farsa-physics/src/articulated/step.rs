@@ -11,7 +11,7 @@ use crate::articulated::contact::place_colliders;
 use crate::articulated::external::Wrenches;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::group::{Sphere, place_spheres};
-use crate::articulated::halves::{fast_lanes, take_back};
+use crate::articulated::halves::{fast_lanes, remember, take_back};
 use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
@@ -189,7 +189,7 @@ fn advance<S: Scalar>(
         for part in 0..parts {
             if part == 1 {
                 s.live = halved;
-                s.between.copy_from_slice(state);
+                remember(simd, model, state, &mut s.between);
             }
             before(state, s);
             substep(simd, model, state, s);
