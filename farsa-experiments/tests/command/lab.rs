@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
+use crate::live::{asked, data, evolving, saved_run};
 use crate::tool::{Announced, command, content, farsa, ok, results, say, scratch};
 
 /// A server that ends with the test. Its runs do not.
@@ -212,16 +213,21 @@ fn keep(lab: &Lab, here: &Path) {
         assert_eq!(answer["file"], expected);
         assert_eq!(fs::read_to_string(here.join(expected)).expect("a text"), kind);
     }
-    // A page without a generation has no state, so the run evolves by its configuration.
-    let config = fs::read_to_string(here.join("runs/follow-1/config.toml")).expect("a text");
-    let config = config.replace("\ngenerations = 3010", "\ngenerations = 5");
-    let saved =
-        json!({ "format": "farsa-saved-run", "version": 1, "generation": 0, "state_crc32": 0, "config": config });
+    // The run of its page, which has evolved nothing more.
+    let live = &data(&here.join("pages/live-follow-1.html"))["live"];
+    let saved = saved_run(live, &asked(&mut evolving(live), &json!({ "do": "state" })));
     let request = json!({ "kind": "run", "run": "follow-1", "text": saved.to_string() });
     let answer = lab.done("/api/keep", &request);
     assert_eq!((&answer["file"], &answer["run"]), (&json!("exports/follow-1.run.json"), &json!("follow-1.2")));
     assert_eq!(answer["command"], "farsa run --from exports/follow-1.run.json --out runs/follow-1.2");
-    assert_eq!(lab.until("follow-1.2", "finished")["done"], 5);
+    assert_eq!(lab.until("follow-1.2", "finished")["done"], 3010);
+    assert_eq!(results(&here.join("runs/follow-1.2")), results(&here.join("runs/follow-1")));
+    // Another state is an error of the run.
+    let other = saved.to_string().replace("\"state_crc32\":", "\"state_crc32\":1");
+    let answer = lab.done("/api/keep", &json!({ "kind": "run", "run": "follow-1", "text": other }));
+    assert_eq!(answer["run"], "follow-1.3");
+    let error = lab.until("follow-1.3", "failed")["error"].to_string();
+    assert!(error.contains("the state after 3010 generations differs"), "{error}");
     for (wrong, code) in [
         (json!({ "kind": "script", "run": "follow-9", "text": "" }), 404),
         (json!({ "kind": "script", "run": "../follow-1", "text": "" }), 400),
@@ -252,10 +258,12 @@ fn pages_exports_and_trash(lab: &Lab, here: &Path) {
     keep(lab, here);
     let run = lab.data("/api/run?name=follow-1");
     assert_eq!(run["pages"].as_array().map(Vec::len), Some(3), "{run}");
-    assert_eq!(run["exports"].as_array().map(Vec::len), Some(6), "{run}");
+    assert_eq!(run["exports"].as_array().map(Vec::len), Some(7), "{run}");
     let before = content(&here.join("runs/follow-1"));
     assert_eq!(lab.done("/api/trash", &json!({ "run": "follow-1" }))["moved"], ".trash/follow-1");
-    lab.done("/api/trash", &json!({ "run": "follow-1.2" }));
+    for run in ["follow-1.2", "follow-1.3"] {
+        lab.done("/api/trash", &json!({ "run": run }));
+    }
     assert_eq!(lab.data("/api/list")["runs"], json!([]));
     assert_eq!(content(&here.join(".trash/follow-1")).len(), before.len());
     lab.done("/api/trash", &json!({ "file": "follow.toml" }));

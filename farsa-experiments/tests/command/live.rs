@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use crate::tool::{farsa, ok, own, say, scratch};
 
 /// The data of a page.
-fn data(path: &Path) -> Value {
+pub(crate) fn data(path: &Path) -> Value {
     let html = fs::read_to_string(path).expect("the page");
     let (_, rest) = html.rsplit_once("id=\"data\">").expect("the data");
     let (text, _) = rest.split_once("</script>").expect("their end");
@@ -40,11 +40,11 @@ fn standing(live: &Value) -> Value {
 }
 
 /// Opens a session that can continue the evolution.
-fn evolving(live: &Value) -> LiveSession {
+pub(crate) fn evolving(live: &Value) -> LiveSession {
     LiveSession::open(&farsa_experiments::laboratory(), &standing(live).to_string()).expect("an agent")
 }
 
-fn asked(session: &mut LiveSession, request: &Value) -> Value {
+pub(crate) fn asked(session: &mut LiveSession, request: &Value) -> Value {
     serde_json::from_str(&session.answer(&request.to_string())).expect("JSON")
 }
 
@@ -295,7 +295,7 @@ fn evolution_continues_in_a_page_as_in_a_run() {
 }
 
 /// Content of the file that a page saves of its evolution.
-fn saved_run(live: &Value, mark: &Value) -> Value {
+pub(crate) fn saved_run(live: &Value, mark: &Value) -> Value {
     let mut saved = json!({ "format": "farsa-saved-run", "version": 1, "config": live["script"]["config"] });
     for key in ["generation", "state_crc32"] {
         saved[key] = mark[key].clone();
@@ -331,7 +331,7 @@ fn a_saved_run_continues_only_from_its_own_state() {
     other["state_crc32"] = 1.into();
     write(&other);
     let said = say(farsa(), &here, "run --from s.json --out other");
-    assert!(said.code == Some(2) && said.err.contains("the state after generation 1 differs"), "{said:?}");
+    assert!(said.code == Some(2) && said.err.contains("the state after 2 generations differs"), "{said:?}");
     assert_eq!(log("other"), 3);
 }
 

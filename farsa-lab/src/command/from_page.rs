@@ -15,6 +15,7 @@ use crate::run::plan::Plan;
 use crate::run::records::Checkpoint;
 use crate::run::summary::Summary;
 use crate::run::{begin, evolve};
+use crate::shell::resume_command;
 use crate::store::directory::Directory;
 use crate::strategy::settings::GENERATIONS;
 
@@ -28,6 +29,9 @@ impl<'e> Invocation<'e, '_> {
         let SavedRun { config, mark } = SavedRun::read(file)?;
         let place = file.display().to_string();
         let mut plan = Plan::from_file(self.laboratory, &ConfigFile::parse(&place, &config)?)?;
+        if let Some(file) = plan.experiment.files(&plan.condition, &plan.settings)?.first() {
+            return Err(Error::Usage(format!("{place}: a page reads no files, and the run needs {}", file.display())));
+        }
         let whole = |generations: u32| Value::Whole(i64::from(generations));
         if let Some(generations) = args.generations {
             plan.set("--generations", GENERATIONS, Value::Whole(generations))?;
@@ -42,24 +46,33 @@ impl<'e> Invocation<'e, '_> {
         let path = args.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(plan.name()));
         self.make_room(args.force, &plan, &path)?;
         let directory = begin::create(&plan, &path)?;
+        let last = plan.generations()?;
         let evolved = |plan: &Plan<'e>, pool| {
-            evolve::continue_run(plan, &directory, pool, stop_on_signals(), self.program, self.quiet)
+            let summary = evolve::continue_run(plan, &directory, pool, stop_on_signals(), self.program, self.quiet);
+            summary.map_err(|error| match error {
+                Error::Interrupted { .. } => {
+                    let resume = resume_command(self.program, directory.path());
+                    Error::Interrupted { resume: format!("{resume} --generations {last}") }
+                }
+                error => error,
+            })
         };
-        let mut summary = if mark.generation == 0 {
-            evolved(&plan, pool)?
-        } else {
-            let mut repeated = plan.clone();
-            repeated.set(&place, GENERATIONS, whole(mark.generation))?;
-            let summary = evolved(&repeated, pool)?;
-            let found = state_of(&repeated, &directory)?;
-            if found != Some(mark) {
-                return Err(Error::Usage(format!(
-                    "{place}: the state after generation {} differs from this program's, whose run is in {}",
-                    mark.generation - 1,
-                    path.display()
-                )));
-            }
-            if plan.generations()? > mark.generation { evolved(&plan, self.pool(args, &plan)?)? } else { summary }
+        let mut repeated = None;
+        if mark.generation > 0 {
+            let mut until = plan.clone();
+            until.set(&place, GENERATIONS, whole(mark.generation))?;
+            repeated = Some(evolved(&until, pool)?);
+        }
+        if state_of(&plan, &directory)? != Some(mark) {
+            return Err(Error::Usage(format!(
+                "{place}: the state after {} generations differs from this program's, whose run is in {}",
+                mark.generation,
+                path.display()
+            )));
+        }
+        let mut summary = match repeated {
+            Some(summary) if last == mark.generation => summary,
+            _ => evolved(&plan, self.pool(args, &plan)?)?,
         };
         self.test_run(&mut summary, Tests::of_champions(args.test), &args.workers)?;
         Ok((summary, plan))

@@ -62,6 +62,13 @@ impl Agent {
         if expected != count {
             return Err(Error::Other(format!("script: an individual of {count} parameters where {expected} are")));
         }
+        let (populations, trials) = (evaluator.info().populations.len(), evaluator.info().trials);
+        let met = saved.opponents.len();
+        if populations > 1 && met < trials {
+            return Err(Error::Other(format!(
+                "script: an individual with opponents in {met} trials where {trials} are"
+            )));
+        }
         let normalisation = saved.normalisation.as_deref().map(ObservationStatistics::from_saved).transpose();
         let normalisation = normalisation.map_err(|error| Error::Other(format!("script: {error}")))?;
         Ok(Self { saved, normalisation })

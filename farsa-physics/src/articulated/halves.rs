@@ -27,7 +27,7 @@ pub(crate) fn fast_lanes<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, work:
     largest.gt(S::splat(simd, fast))
 }
 
-/// Copies the words of a state that [`take_back`] reads. Of a group that is far in all lanes it reads one point.
+/// Copies the words of a state that [`take_back`] reads. It reads one point of a group that is far in all lanes.
 #[inline(always)]
 pub(crate) fn remember<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &[S], before: &mut [S]) {
     let mut copy = |range: Range<usize>| before[range.clone()].copy_from_slice(&state[range]);

@@ -123,8 +123,20 @@ pub(crate) struct WorldArgs {
 }
 
 /// Arguments that contradict the configuration of a saved page.
-pub(crate) const FIXED_BY_PAGE: [&str; 10] =
-    ["experiment", "condition", "set", "strategy", "seed", "population", "name", "config", "resume", "replications"];
+pub(crate) const FIXED_BY_PAGE: [&str; 12] = [
+    "experiment",
+    "condition",
+    "set",
+    "strategy",
+    "seed",
+    "population",
+    "name",
+    "config",
+    "resume",
+    "replications",
+    "replication",
+    "groups",
+];
 
 /// Parallel trials.
 #[derive(Args)]

@@ -214,9 +214,12 @@ impl Facts {
             None => {
                 let is_done = log.done as u64 >= files.generations;
                 // A run may have been continued in a terminal after its last process failed here.
-                let job = job.as_ref().filter(|job| !is_done || job.kind == Kind::Test);
+                let is_of_page = job.as_ref().is_some_and(|job| job.words.get(1).is_some_and(|word| word == "--from"));
+                let job = job.as_ref().filter(|job| !is_done || is_of_page || job.kind == Kind::Test);
                 error = error.or_else(|| job.and_then(|job| failure(job, queue)));
                 match (is_done, &error) {
+                    // Its generations are not those of the page.
+                    (true, Some(_)) if is_of_page => RunState::Failed,
                     (true, _) => RunState::Finished,
                     (false, Some(_)) => RunState::Failed,
                     (false, None) => RunState::Stopped,

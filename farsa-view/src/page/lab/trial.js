@@ -3,7 +3,7 @@
 import { change, confirmed, h, note, read, show } from "./parts.js";
 import { header } from "./start.js";
 
-const KEPT = { genotype: "the genes of the individual", configuration: "the configuration with the changes", script: "the commands that repeat the trial", run: "the run with its new generations" };
+const KEPT = { genotype: "the genes of the individual", configuration: "the configuration with the changes", script: "the command that repeats the trial", run: "the run with its new generations" };
 
 export async function trial(run, signal, isHere) {
   const list = await read("/api/list");

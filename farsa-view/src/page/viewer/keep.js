@@ -16,44 +16,33 @@ function keep(kind, name, text) {
 
 const quotedWord = (word) => `'${word.replaceAll("'", "'\\''")}'`;
 
-// The commands that repeat a trial. `genes` are needed where settings are changed.
-function commandsOf({title, live: {script}}, {individual, trial, settings, moves, pushes, changes}, {individuals}, genes) {
+// The command that repeats a trial of the run. Throws where there is none.
+function commandOf({individual, trial, settings, moves, pushes, changes}, {individuals}) {
 	const {generation, individual: number, origin} = individuals[individual];
+	const why = origin === "random" ? "of a random genome: save its genes" : origin ? "that was evolved here: save the run first"
+		: settings.size ? "with other settings: save the configuration and the genes" : trial.fresh ? "from a fresh start alone"
+		: moves.length + pushes.length ? "with bodies that were moved or pushed" : "";
+	if (why) throw new Error(`No command repeats a trial ${why}.`);
 	const lesion = changes.size ? ` --lesion ${quotedWord(listOf({changes}))}` : "";
-	const hands = moves.length + pushes.length;
-	const lines = ["#!/bin/sh", "# Repeats a trial of a page. The argument is the directory of its run.", "set -eu", `run=\${1:-${quotedWord(`runs/${title}`)}}`];
-	if (hands) lines.push(`# ${hands} bodies were moved or pushed by hand, which no command repeats.`);
-	if (settings.size || origin === "random") {
-		const [, experiment] = /^experiment = "(.*)"$/m.exec(script.config) ?? [];
-		const [, condition] = /^condition = "(.*)"$/m.exec(script.config) ?? [];
-		const file = /^definition = /m.test(script.config) ? ".toml" : "";
-		const sets = [...settings].map(([key, value]) => ` --set ${quotedWord(`${key}=${value}`)}`).join("");
-		lines.push("cat >genes.gen <<'GENES'", genes.trimEnd(), "GENES");
-		lines.push(`farsa evaluate ${quotedWord(`${experiment}${file}`)}${condition ? ` --condition ${quotedWord(condition)}` : ""}${sets} --genes-file genes.gen --trials 100`);
-		return `${lines.join("\n")}\n`;
-	}
-	if (origin === "evolved") lines.push(`farsa run --resume "$run" --generations ${generation + 1}`);
-	const which = `--generation ${generation} --individual ${number}`;
-	if (trial.fresh) lines.push("# The trial is the last of these.", `farsa test "$run" ${which} --seed ${trial.fresh.seed} --trials ${trial.fresh.number + 1}`);
-	else lines.push(`farsa replay "$run" ${which} --trial ${trial.number}${lesion} --html trial.html`);
-	return `${lines.join("\n")}\n`;
+	return `#!/bin/sh
+# Repeats a trial of a page. The argument is the directory of its run.
+farsa replay "\${1:?the directory of the run}" --generation ${generation} --individual ${number} --trial ${trial.number}${lesion} --html trial.html
+`;
 }
 
-const KEPT = [["genotype", "genes of this individual"], ["configuration", "configuration with the changes"], ["script", "commands that repeat the trial"], ["run", "run with its new generations"]];
+const KEPT = [["genotype", "genes of this individual"], ["configuration", "configuration with the changes"], ["script", "command that repeats the trial"], ["run", "run with its new generations"]];
 
 // The choice of what is saved. `evolved` identifies the state of the evolution, where there is one.
 function keeping(page, state, about, evolved, say) {
 	const {title, live: {script}} = page;
 	const what = pick("What is saved", KEPT.filter(([kind]) => kind !== "run" || evolved), () => {});
-	const genes = async () => (await answerOf({do: "genotype", individual: state.individual})).text;
 	const texts = {
 		async genotype() {
-			return [`${title}-${about.individuals[state.individual].generation}-${about.individuals[state.individual].individual}.gen`, await genes()];
+			const {generation, individual} = about.individuals[state.individual];
+			return [`${title}-${generation}-${individual}.gen`, (await answerOf({do: "genotype", individual: state.individual})).text];
 		},
 		configuration: () => [`${title}.changed.toml`, configOf(page, state)],
-		async script() {
-			return [`${title}.trial.sh`, commandsOf(page, state, about, state.settings.size || about.individuals[state.individual].origin === "random" ? await genes() : "")];
-		},
+		script: () => [`${title}.trial.sh`, commandOf(state, about)],
 		async run() {
 			const mark = await evolved();
 			return [`${title}-${mark.generation}.run.json`, JSON.stringify({format: "farsa-saved-run", version: 1, ...mark, config: script.config})];

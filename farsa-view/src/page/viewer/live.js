@@ -386,15 +386,17 @@ function attach(page, state, whole, player, open) {
 		return show();
 	};
 	// A part that cannot be changed so is not changed.
-	const settle = (settings) => {
-		const before = {...state};
-		state.settings = settings;
+	const settle = (changed) => {
+		const [before, unknown] = [{...state}, [...changed.keys()].find((key) => !settings.some((setting) => setting.key === key))];
+		if (unknown) return say(`There is no setting ${unknown}.`);
+		state.settings = changed;
 		return show(before);
 	};
 	const undo = () => (state.changes.clear(), Object.assign(state, {settings: new Map(), moves: [], pushes: []}), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
 	const test = () => testOf(page, state, own, counted);
-	const form = settingsForm(settingsOf(page.live.script.config), settle);
+	const [draw, settings] = [drawing(page.live.script), settingsOf(page.live.script.config)];
+	const form = settingsForm(settings, settle);
 	const own = controlsOf(page, {form, random, set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
 	const summarize = (count) => behaviorOf(count, page, state, own, change);
@@ -413,13 +415,13 @@ function attach(page, state, whole, player, open) {
 
 	// Runs the trial intact and with changes, on one clock.
 	async function show(before = {...state}) {
-		const [mine, changes, {pushes, settings}] = [++turn, changesOf(page, state), state];
+		const [mine, changes, {pushes, settings: given}] = [++turn, changesOf(page, state), state];
 		marks();
 		say("runs ...");
 		try {
 			const [intact, changed] = await runBoth(state, changes);
 			if (mine !== turn) return;
-			form.take(settings);
+			form.take(given);
 			answer = intact;
 			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i, i ? pushes : [])));
 			player.show(page.trials[0], page.trials[1]);
@@ -450,8 +452,9 @@ function attach(page, state, whole, player, open) {
 		return say(verdictOf(state.trial, about.individuals[state.individual], answer));
 	}
 
-	const draw = drawing(page.live.script);
-	const random = () => draw().then(([individual, name]) => showMore([individual], [name], "random"), (error) => say(error.message));
+	function random() {
+		return draw().then(([individual, name]) => showMore([individual], [name], "random"), (error) => say(error.message));
+	}
 
 	// Shows the first of further individuals, with a name for each.
 	const showMore = async (more, names, origin = "evolved") =>
