@@ -3,13 +3,15 @@
 
     signals.py FARSA FOLDER > FILE.csv
     signals.py FARSA FOLDER teams > FILE.csv
+    signals.py summary FILE.csv > SUMMARY.csv
 
 FARSA is the command and FOLDER holds the runs. The plan is in studies/signals-foraging.toml. Cells are the mean fitness of fresh trials with
-its 95 % interval, and for teams the mean per robot.
+its 95 % interval, and for teams the mean per robot. A summary has a row for each case, with the means of the seeds and their median.
 """
 import csv
 import json
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -53,7 +55,20 @@ def teams(farsa, run, experiment):
     return {case["row"]: f"{case['fitness'] / int(case['row']):.2f}" for case in sizes}
 
 
+def summary(file):
+    with open(file, newline="") as source:
+        rows = list(csv.DictReader(source))
+    out = csv.writer(sys.stdout, lineterminator="\n")
+    out.writerow(["case", f"seeds {rows[0]['seed']} to {rows[-1]['seed']}", "median"])
+    for case in list(rows[0])[1:]:
+        means = [row[case].split(" ")[0] for row in rows]
+        out.writerow([case, ", ".join(means), f"{statistics.median(map(float, means)):.3f}"])
+
+
 def main():
+    if len(sys.argv) == 3 and sys.argv[1] == "summary":
+        summary(sys.argv[2])
+        return
     if len(sys.argv) not in (3, 4) or sys.argv[3:] not in ([], ["teams"]):
         sys.exit(__doc__)
     farsa, folder = sys.argv[1:3]
