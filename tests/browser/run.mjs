@@ -899,7 +899,7 @@ async function tabbed(browser, name) {
     document.body.removeAttribute("tabindex");
     window.reached = new Set();
     document.addEventListener("focusin", (event) => reached.add(event.target));
-    window.controls = [...document.querySelectorAll("button, select, input, summary")].filter((one) => one.offsetHeight && !one.disabled);
+    window.controls = [...document.querySelectorAll("button, select, input, summary")].filter((one) => one.offsetHeight && one.checkVisibility() && !one.disabled);
     return controls.length;
   });
   await browser.keys(KEY.tab.repeat(count + 3));
