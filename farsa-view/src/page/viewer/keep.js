@@ -32,8 +32,8 @@ farsa replay "\${1:?the directory of the run}" --generation ${generation} --indi
 
 const KEPT = [["genotype", "genes of this individual"], ["configuration", "configuration with the changes"], ["script", "command that repeats the trial"], ["run", "run with its new generations"]];
 
-// The choice of what is saved. `evolved` identifies the state of the evolution, where there is one.
-function keeping(page, state, about, evolved, say) {
+// The choice of what is saved, before an element. `evolved` identifies the state of the evolution, where there is one.
+function keeping(page, state, about, evolved, say, next) {
 	const {title, live: {script}} = page;
 	const what = pick("What is saved", KEPT.filter(([kind]) => kind !== "run" || evolved), () => {});
 	const texts = {
@@ -60,5 +60,6 @@ function keeping(page, state, about, evolved, say) {
 		}
 	}
 	const one = Object.assign(button("Save", () => act(what.value)), {id: "keep"});
-	return {element: make("div", "bar", what, one), act};
+	next.before(make("div", "bar", what, one));
+	return {act};
 }

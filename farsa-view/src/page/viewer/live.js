@@ -397,7 +397,7 @@ function attach(page, state, whole, player, open) {
 	const test = () => testOf(page, state, own, counted);
 	const [draw, settings] = [drawing(page.live.script), settingsOf(page.live.script.config)];
 	const form = settingsForm(settings, settle);
-	const own = controlsOf(page, {form, random, set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
+	const own = controlsOf(page, {form, random: () => random(), set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
 	const summarize = (count) => behaviorOf(count, page, state, own, change);
 
@@ -452,13 +452,10 @@ function attach(page, state, whole, player, open) {
 		return say(verdictOf(state.trial, about.individuals[state.individual], answer));
 	}
 
-	function random() {
-		return draw().then(([individual, name]) => showMore([individual], [name], "random"), (error) => say(error.message));
-	}
-
 	// Shows the first of further individuals, with a name for each.
 	const showMore = async (more, names, origin = "evolved") =>
 		change({individual: await included(about, more, names, origin), trial: {number: state.trial.number ?? 0}});
+	const random = () => draw().then(([individual, name]) => showMore([individual], [name], "random"), (error) => say(error.message));
 
 	addressed(player, state, about, change);
 	const {put, push} = movable(page, player, state, own, show, say);
@@ -468,8 +465,7 @@ function attach(page, state, whole, player, open) {
 	choose("");
 	marks();
 	const {run, rows, mark} = evolutionOf(page, open, showMore);
-	const kept = keeping(page, state, about, mark, say);
-	form.element.before(kept.element);
+	const kept = keeping(page, state, about, mark, say, form.element);
 	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), settle: (some) => settle(new Map(Object.entries(some))), random, keep: kept.act, test, summarize, verify};
 	return begin;
 }
