@@ -69,10 +69,13 @@ export class Curve {
   later() {
     if (this.waits) return;
     this.waits = true;
-    requestAnimationFrame(() => {
+    const draw = () => {
       this.waits = false;
       this.draw();
-    });
+    };
+    // A long curve leaves time for everything else.
+    if (this.rows.length < 5000) requestAnimationFrame(draw);
+    else setTimeout(draw, 500);
   }
 
   caption(row) {
