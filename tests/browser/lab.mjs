@@ -105,7 +105,7 @@ async function journey(visitor, file) {
   await visitor.picture("3-experiment");
 
   // The form of settings: a value out of range is named, and a right one is taken.
-  for (const [key, value] of [["episode.steps", "30"], ["episode.trials", "6"], ["evolution.population", "20"], ["evolution.parents", "2"]]) {
+  for (const [key, value] of [["episode.steps", "300"], ["episode.trials", "6"], ["evolution.population", "20"], ["evolution.parents", "2"]]) {
     const row = `[data-key="${key}"]`;
     const isOpen = await browser.run((row) => document.querySelector(row).closest("details").open, row);
     if (!isOpen) {
