@@ -73,16 +73,6 @@ class Visitor {
     await this.browser.keys(text);
   }
 
-  // Presses *Stop* until the run stops. A press is lost if an older state arrives in that moment.
-  async stop() {
-    const stopped = () => this.browser.run(() => document.querySelector("#status .stopped") && document.querySelector("#status").textContent);
-    for (let tries = 0; tries < 5 && !(await stopped()); tries++) {
-      await this.press("#stop");
-      for (let wait = 0; wait < 50 && !(await stopped()); wait++) await sleep(100);
-    }
-    return this.state("stopped");
-  }
-
   state(name) {
     return this.browser.until((state) => document.querySelector(`#status .${state}`) && document.querySelector("#status").textContent, name);
   }
@@ -105,7 +95,7 @@ async function journey(visitor, file) {
   await visitor.picture("3-experiment");
 
   // The form of settings: a value out of range is named, and a right one is taken.
-  for (const [key, value] of [["episode.steps", "300"], ["episode.trials", "6"], ["evolution.population", "20"], ["evolution.parents", "2"]]) {
+  for (const [key, value] of [["episode.steps", "30"], ["episode.trials", "6"], ["evolution.population", "20"], ["evolution.parents", "2"]]) {
     const row = `[data-key="${key}"]`;
     const isOpen = await browser.run((row) => document.querySelector(row).closest("details").open, row);
     if (!isOpen) {
@@ -131,17 +121,20 @@ async function journey(visitor, file) {
   check(`${name}: the run is watched`, (await browser.run(() => document.querySelector("figcaption output").textContent)).startsWith("generation "));
   check(`${name}: its command can be repeated`, (await browser.run(() => document.querySelector(".command code").textContent)).includes(`farsa run ${file}.toml --seed 1 --generations 1000000 --set evolution.population=20`));
   await visitor.picture("6-running");
+  await visitor.press("#stop");
   // No machine ends this run before it is stopped.
-  const stopped = await visitor.stop();
+  const stopped = await visitor.state("stopped");
   check(`${name}: it stops before its end`, /^stopped\d+ of 1000000 generations$/.test(stopped), stopped);
   await visitor.picture("7-stopped");
   await visitor.press("#resume");
   await visitor.state("running");
-  await visitor.stop();
+  await visitor.press("#stop");
+  await visitor.state("stopped");
   await visitor.type("#more", "1000100");
   await visitor.press("#extend");
   await browser.until(() => /^running\d+ of 1000100/.test(document.querySelector("#status").textContent));
-  await visitor.stop();
+  await visitor.press("#stop");
+  await visitor.state("stopped");
   await visitor.type("#trials", "30");
   check(`${name}: the protocols are offered`, (await browser.until(() => document.querySelector("#protocol")?.textContent)).includes("lesions"));
   await visitor.press("#test");

@@ -21,6 +21,7 @@ impl<B: Copy> Point<B> {
 
     /// Returns the position of the point in the world (in meters).
     pub fn position<W: Kinematics<Body = B> + ?Sized>(&self, world: &W) -> [f32; 3] {
+        // Some worlds compute the origin without the rotation.
         if self.at == [0.0; 3] { world.origin(self.body) } else { world.pose(self.body).transform(self.at) }
     }
 }

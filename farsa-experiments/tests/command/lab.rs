@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use crate::live::{asked, data, evolving, saved_run};
+use crate::live::{asked, data, evolving};
+use crate::saved_page::saved_run;
 use crate::tool::{Announced, command, content, farsa, ok, results, say, scratch};
 
 /// A server that ends with the test. Its runs do not.

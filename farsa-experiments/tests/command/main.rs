@@ -31,6 +31,7 @@ mod replications;
 mod report;
 mod robot;
 mod same_bytes;
+mod saved_page;
 mod serve;
 mod strangers;
 mod sweep;

@@ -95,7 +95,7 @@ impl<S: Scalar<Real = f32>> Share<S> {
         }
     }
 
-    /// Writes which pairs touch.
+    /// Writes which pairs touch. A world alone stops at the first point that does ([`is_touching`](crate::articulated::view::is_touching)).
     #[inline(always)]
     fn store_touching(&self, simd: S::Simd, model: &Model<f32>, to: &mut [f32], lanes: usize, lane: usize) {
         let (zero, one) = (S::splat(simd, 0.0), S::splat(simd, 1.0));

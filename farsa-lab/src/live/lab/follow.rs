@@ -39,6 +39,8 @@ pub(super) struct Follow {
     bench: Arc<Bench>,
     run: String,
     tail: LogTail,
+    /// True if the log was read to its end in this interval. The state is next.
+    is_read: bool,
     /// State that was sent last.
     state: Bytes,
 }
@@ -47,27 +49,30 @@ impl Follow {
     /// Starts the events of a run after the given number of generations.
     pub(super) fn new(listener: Listener, bench: Arc<Bench>, run: &str, tail: LogTail) -> Self {
         let (run, state) = (run.to_owned(), Bytes::new());
-        Self { _listener: listener, bench, run, tail, state }
+        Self { _listener: listener, bench, run, tail, is_read: false, state }
     }
 }
 
 impl Events for Follow {
     fn next(&mut self) -> Next {
         // A log that is being written is read in the next interval.
-        match self.tail.read() {
+        let part = if self.is_read { Ok(Part::Rows(Vec::new(), false)) } else { self.tail.read() };
+        self.is_read = !matches!(part, Ok(Part::Rows(_, true)));
+        match part {
             Ok(Part::Other) => return Next::Last(Bytes::from_static(REPLACED)),
             Ok(Part::Rows(rows, true)) if rows.is_empty() => return Next::More,
             Ok(Part::Rows(rows, _)) if !rows.is_empty() => {
                 let next = rows.last().map(|row| row.0 + 1);
-                return event("fitness", next, &rows).map_or(Next::Nothing, Next::Event);
+                return event("fitness", next, &rows).map_or(Next::Nothing, |event| Next::Event(event, true));
             }
             _ => {}
         }
+        self.is_read = false;
         let state = self.bench.state(&self.run).and_then(|facts| event("state", None, &facts).ok());
         match state.filter(|state| *state != self.state) {
             Some(state) => {
                 self.state = state.clone();
-                Next::Event(state)
+                Next::Event(state, false)
             }
             None => Next::Nothing,
         }

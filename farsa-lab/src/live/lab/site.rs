@@ -11,7 +11,7 @@ use std::time::Duration;
 use hyper::body::{Body as _, Bytes, Incoming};
 use hyper::header::{
     CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HeaderMap, HeaderValue, ORIGIN, REFERRER_POLICY,
-    SET_COOKIE,
+    SET_COOKIE, X_FRAME_OPTIONS,
 };
 use hyper::{Method, Request, Response};
 use tokio::sync::oneshot;
@@ -151,8 +151,12 @@ impl Service for Site {
         let Reply { status, kind, content } = reply;
         let mut response = response(status, kind, Answer::text(content, activity));
         let headers = response.headers_mut();
-        let policy = if path.starts_with("/files/") || kind.starts_with("image/") { SANDBOX } else { POLICY };
+        let is_of_folder = path.starts_with("/files/") || kind.starts_with("image/");
+        let policy = if is_of_folder { SANDBOX } else { POLICY };
         headers.insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(policy));
+        if is_of_folder {
+            headers.insert(X_FRAME_OPTIONS, HeaderValue::from_static("SAMEORIGIN"));
+        }
         headers.insert(REFERRER_POLICY, HeaderValue::from_static("no-referrer"));
         if kind == "application/octet-stream" {
             headers.insert(CONTENT_DISPOSITION, HeaderValue::from_static("attachment"));

@@ -62,14 +62,14 @@ impl paced::Events for Events {
         }
         if let Some((number, event)) = current.champions.filter(|(number, _)| *number != self.champions) {
             self.champions = number;
-            return Next::Event(event);
+            return Next::Event(event, true);
         }
         // A file that is being written is read in the next interval.
         match self.rows(&run) {
             Some(Part::Other) => Next::Last(Bytes::from_static(REPLACED)),
-            Some(Part::Rows(rows, _)) if !rows.is_empty() => {
+            Some(Part::Rows(rows, more)) if !rows.is_empty() => {
                 let next = rows.last().map(|row| row.0 + 1);
-                event("fitness", next, &rows).map_or(Next::Nothing, Next::Event)
+                event("fitness", next, &rows).map_or(Next::Nothing, |event| Next::Event(event, more))
             }
             Some(Part::Rows(_, true)) => Next::More,
             _ => Next::Nothing,

@@ -222,10 +222,14 @@ fn trials_with_every_strategy_can_be_measured() {
             create(&plan, &root.join(format!("{}-{}", numbers.strategy.name(), numbers.populations))).unwrap();
         run(&plan, &directory, 1);
         for sample in [Sample::random(&plan), Sample::from_run(&plan, &directory)] {
-            let told = serde_json::to_value(bench(&plan, &sample.unwrap(), pool(&plan, 2), 1e-3).unwrap()).unwrap();
+            let sample = sample.unwrap();
+            // On a busy machine no trial may end in a millisecond.
+            let patience =
+                [1e-3, 1.0, 60.0].iter().filter_map(|&time| bench(&plan, &sample, pool(&plan, 2), time).ok());
+            let mut all = patience.map(|bench| serde_json::to_value(bench).unwrap());
+            let told = all.find(|told| told["trials"].as_u64().unwrap() > 0).unwrap();
             let rounds = told["rounds"].as_u64().unwrap();
             assert!(rounds == 0 || told["trials"].as_u64().unwrap() >= rounds * u64::from(trials), "{told}");
-            assert!(told["trials"].as_u64().unwrap() > 0, "{told}");
         }
     }
     fs::remove_dir_all(root).unwrap();

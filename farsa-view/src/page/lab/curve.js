@@ -69,13 +69,10 @@ export class Curve {
   later() {
     if (this.waits) return;
     this.waits = true;
-    const draw = () => {
+    requestAnimationFrame(() => {
       this.waits = false;
       this.draw();
-    };
-    // A long curve leaves time for everything else.
-    if (this.rows.length < 5000) requestAnimationFrame(draw);
-    else setTimeout(draw, 500);
+    });
   }
 
   caption(row) {

@@ -45,7 +45,13 @@ class RunPage {
   }
 
   button(text, id, action) {
-    const button = h("button", { id, onclick: () => act(button, action) }, text);
+    const button = h("button", { id, onclick: async () => {
+      const isHeld = document.activeElement === button;
+      await act(button, action);
+      // A disabled button loses the keyboard. A hidden one leaves it to the button in its place.
+      const here = [button, this.stop, this.resume, this.extend].find((one) => !one.hidden && !one.disabled);
+      if (isHeld && document.activeElement === document.body) here?.focus();
+    } }, text);
     return button;
   }
 
@@ -124,7 +130,7 @@ class RunPage {
     this.resume.hidden = isBusy || isLost || facts.state === "finished";
     for (const part of [this.more, this.extend]) part.hidden = isBusy || isLost;
     if (document.activeElement !== this.more) this.more.value = String(Math.max(generations, done) + Math.max(10, Math.round(Math.max(generations, 1) / 2)));
-    for (const button of [...this.makers, this.exportButton]) button.disabled = !done;
+    for (const button of [this.trialButton, ...this.makers, this.exportButton]) button.disabled = !done;
     for (const button of [this.testButton, this.protocolButton]) button.disabled = !done || isBusy;
     this.trash.disabled = isBusy || isLost;
     const rows = [
@@ -196,11 +202,10 @@ class RunPage {
     this.generation ||= h("input", { id: "generation", inputmode: "numeric", autocomplete: "off", placeholder: "the champion's", size: 9 });
     this.individual ||= h("input", { id: "individual", inputmode: "numeric", autocomplete: "off", placeholder: "the best", size: 6 });
     this.trialButton ||= this.button("Open the trial", "make-live", () => this.openTrial());
-    if (!this.makers.includes(this.trialButton)) this.makers.unshift(this.trialButton);
     this.pages.replaceChildren(...[
       h("h2", { id: "pages" }, "Trials and pages"),
       this.readOnly ? null : h("div", { class: "bar" }, field("Generation", this.generation), field("Individual", this.individual), this.trialButton),
-      this.readOnly ? null : h("div", { class: "stack" }, this.makers.slice(1)),
+      this.readOnly ? null : h("div", { class: "stack" }, this.makers),
       this.data.pages.length ? h("ul", { class: "files" }, this.data.pages.map((file) =>
         h("li", {}, file === `live-${this.name}.html` ? h("a", { href: `#/trial/${encodeURIComponent(this.name)}` }, file)
           : h("a", { href: `/files/pages/${encodeURIComponent(file)}`, target: "_blank", rel: "noopener" }, file)))) : null,

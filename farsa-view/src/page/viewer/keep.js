@@ -7,9 +7,9 @@ window.addEventListener("message", ({source, data}) => {
 	else if (data?.farsa === "kept") keeperSays(String(data.text));
 });
 
-// Passes a text on. Only names and texts leave the page.
+// Passes a text on. The laboratory chooses the name of its file.
 function keep(kind, name, text) {
-	if (keeper) keeper.postMessage({farsa: "keep", kind, name, text}, "*");
+	if (keeper) keeper.postMessage({farsa: "keep", kind, text}, "*");
 	else save(name, new Blob([text], {type: "text/plain"}));
 	return keeper ? "" : `${name} was saved.`;
 }

@@ -341,11 +341,12 @@ async function testOf(page, state, own, counted) {
 
 // Returns a function that draws individuals. Each is the first of the run with another seed.
 function drawing({config}) {
+	const [own, withSeed] = seedOf(config);
 	let seed = 0;
 	return async () => {
-		seed += 1 + (seed + 1 === +/^seed = (\d+)$/m.exec(config)?.[1]);
+		seed += 1 + (seed + 1 === own);
 		const name = `, random of seed ${seed}`;
-		const script = {config: seeded(config, seed), individuals: [], newcomer: true};
+		const script = {config: withSeed(seed), individuals: [], newcomer: true};
 		return [await firstWorker("once", {script, request: {do: "individual", individual: 0}}), name];
 	};
 }

@@ -25,12 +25,11 @@ function configWith(config, settings, changed) {
 	return lines.join("\n");
 }
 
-// The configuration with another seed, which precedes the settings.
-function seeded(config, seed) {
-	const lines = config.split("\n");
-	const first = settingsOf(config)[0]?.at ?? lines.length;
-	lines[lines.slice(0, first).findLastIndex((line) => /^seed = \d+$/.test(line))] = `seed = ${seed}`;
-	return lines.join("\n");
+// The seed of a configuration, and a function that gives the configuration with another one. It follows a definition and precedes
+// the sections.
+function seedOf(config) {
+	const [before, seed, after] = /^([\s\S]*?\nseed = )(\d+)(\n\n\[[\s\S]*)$/.exec(config)?.slice(1) ?? [];
+	return [+seed, (other) => before + other + after];
 }
 
 // The row of a setting. A press of Enter applies all.
