@@ -191,11 +191,15 @@ impl<E: Body> ComposedTask<E> {
     }
 
     fn sensors(&self, robot: usize) -> Vec<SensorExport> {
-        let Agents { document, spec, .. } = self.0.agents();
+        let Agents { document, spec, registry, .. } = self.0.agents();
+        let sensed = |kind: &SensorKind, channel| match kind {
+            SensorKind::Registered { kind, keys } => ChannelQuantity::registered(registry, kind, keys, channel),
+            kind => self.0.sensed(kind, channel, robot),
+        };
         let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&spec.sensors);
         let meanings = enabled.flat_map(|(sensor, (_, [first, end]))| {
             (0..end - first)
-                .map(|channel| self.0.sensed(&sensor.kind, channel, robot).with_wrappers(sensor.wrappers.iter()))
+                .map(move |channel| sensed(&sensor.kind, channel).with_wrappers(sensor.wrappers.iter(), registry))
         });
         let channel =
             |(name, ChannelQuantity { quantity, unit, ends: [zero, one], linear }): (&String, ChannelQuantity)| {
@@ -208,11 +212,15 @@ impl<E: Body> ComposedTask<E> {
     }
 
     fn motors(&self, robot: usize) -> Vec<MotorExport> {
-        let Agents { document, spec, .. } = self.0.agents();
+        let Agents { document, spec, registry, .. } = self.0.agents();
+        let driven = |kind: &MotorKind, channel| match kind {
+            MotorKind::Registered { kind, keys } => ChannelQuantity::registered(registry, kind, keys, channel),
+            kind => self.0.driven(kind, channel, robot),
+        };
         let enabled = document.motors.iter().filter(|motor| motor.enabled).zip(&spec.motors);
         let meanings = enabled.flat_map(|(motor, (_, [first, end]))| {
             (0..end - first)
-                .map(|channel| self.0.driven(&motor.kind, channel, robot).with_wrappers(motor.wrappers.iter().rev()))
+                .map(move |channel| driven(&motor.kind, channel).with_wrappers(motor.wrappers.iter().rev(), registry))
         });
         let channel =
             |(name, ChannelQuantity { quantity, unit, ends: [zero, one], .. }): (&String, ChannelQuantity)| {

@@ -14,6 +14,7 @@ mod limits;
 mod name;
 pub mod part;
 mod parts;
+mod wrappers;
 
 pub use check::registry::schema;
 pub use experiment::ComposedExperiment;

@@ -20,8 +20,8 @@ use crate::document::{Ending, MotorKind, SensorKind};
 use crate::parts::agents::Agents;
 use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::network_spec::NetworkSpec;
+use crate::parts::noise_streams::NoiseStreams;
 use crate::parts::tally::Tally;
-use crate::parts::wrapping::NoiseStreams;
 
 /// Robots in a trial, each with a copy of one network.
 #[derive(Clone, Debug)]
@@ -274,16 +274,10 @@ impl Body for ArenaEpisode {
     }
 
     fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity {
-        if let SensorKind::Registered { kind, keys } = kind {
-            return ChannelQuantity::registered(&self.setup.registry, kind, keys, channel);
-        }
         sensed(kind, channel, &self.setup.scene.robots[robot])
     }
 
     fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity {
-        if let MotorKind::Registered { kind, keys } = kind {
-            return ChannelQuantity::registered(&self.setup.registry, kind, keys, channel);
-        }
         driven(kind, channel, &self.setup.scene.robots[robot])
     }
 }

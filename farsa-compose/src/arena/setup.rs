@@ -12,7 +12,6 @@ use crate::arena::scene::{Scene, Thing};
 use crate::arena::sensing::{Sensing, sensor};
 use crate::arena::starting::Starting;
 use crate::arena::term::Term;
-use crate::check::registry::Registry;
 use crate::check::source::Source;
 use crate::document::{Document, Ending, MotorKind, Reward, SensorKind, TestProtocol};
 use crate::formula::compile::Quantity;
@@ -40,7 +39,6 @@ pub(crate) struct Setup {
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
-    pub(crate) registry: Registry,
 }
 
 /// Sensors and motors of a robot.
@@ -106,9 +104,8 @@ impl Setup {
             || terms.iter().any(|term| term.is_about_robot(&scene));
         let starting = Starting::new(&document, &scene, source)?;
         let trainee = Trainee::new(&document, &spec, source)?;
-        let agents = Agents { trainee, ..Agents::new(document, spec, ledger, scene.groups.clone()) };
-        let registry = source.registry.clone();
-        Ok((Self { scene, members, foraging, moving, starting, terms, registry }, agents))
+        let agents = Agents { trainee, ..Agents::new(document, spec, ledger, scene.groups.clone(), &source.registry) };
+        Ok((Self { scene, members, foraging, moving, starting, terms }, agents))
     }
 }
 

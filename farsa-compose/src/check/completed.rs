@@ -43,9 +43,7 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
     };
     let wrapped = |wrappers: &mut [Wrapper], path: &str| {
         for (number, wrapper) in wrappers.iter_mut().enumerate() {
-            if let Wrapper::Registered { kind, keys } = wrapper {
-                completed("wrapper", kind, keys, &format!("{path}/wrappers/{number}"))?;
-            }
+            completed("wrapper", &wrapper.kind, &mut wrapper.keys, &format!("{path}/wrappers/{number}"))?;
         }
         Ok::<(), Error>(())
     };

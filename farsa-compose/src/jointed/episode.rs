@@ -19,7 +19,7 @@ use crate::jointed::scene::Scene;
 use crate::jointed::setup::Setup;
 use crate::parts::agents::Agents;
 use crate::parts::channel_quantity::ChannelQuantity;
-use crate::parts::wrapping::NoiseStreams;
+use crate::parts::noise_streams::NoiseStreams;
 
 /// A robot with its network in a trial.
 #[derive(Clone, Debug)]
@@ -140,16 +140,10 @@ impl Body for JointedEpisode {
     }
 
     fn sensed(&self, kind: &SensorKind, channel: usize, _: usize) -> ChannelQuantity {
-        if let SensorKind::Registered { kind, keys } = kind {
-            return ChannelQuantity::registered(&self.setup.scene.registry, kind, keys, channel);
-        }
         channel_quantity::sensed(kind, channel, &self.setup.scene)
     }
 
     fn driven(&self, kind: &MotorKind, channel: usize, _: usize) -> ChannelQuantity {
-        if let MotorKind::Registered { kind, keys } = kind {
-            return ChannelQuantity::registered(&self.setup.scene.registry, kind, keys, channel);
-        }
         channel_quantity::driven(kind, channel, &self.setup.scene)
     }
 }

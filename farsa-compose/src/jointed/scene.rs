@@ -8,7 +8,6 @@ use farsa_lab::Error;
 use farsa_num::Scalar;
 use farsa_view::shape::{Geometry, Role, SceneObject};
 
-use crate::check::registry::Registry;
 use crate::check::source::Source;
 use crate::document::Document;
 use crate::jointed::named_point::NamedPoint;
@@ -31,7 +30,6 @@ pub(crate) struct Scene {
     floor: Option<usize>,
     /// Actuators with a motor.
     pub(crate) driven: Vec<ActuatorId>,
-    pub(crate) registry: Registry,
     /// Actuators that motors added, with the place of the motor in the file.
     pub(crate) added: Vec<(ActuatorId, String)>,
 }
@@ -64,9 +62,8 @@ impl Scene {
             }
             things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
-        let registry = source.registry.clone();
         let mut scene =
-            Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new(), added: Vec::new(), registry };
+            Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new(), added: Vec::new() };
         scene.pair(document, touches);
         Ok(scene)
     }

@@ -72,7 +72,7 @@ impl Setup {
         let floating = floating.map(|(number, _)| BodyId(number as u16)).collect();
         let (joints, collisions) = (scene.robot.joints().collect(), scene.collisions());
         let trainee = Trainee::new(&document, &spec, source)?;
-        let agents = Agents { trainee, ..Agents::new(document, spec, ledger, groups) };
+        let agents = Agents { trainee, ..Agents::new(document, spec, ledger, groups, &source.registry) };
         Ok((Self { scene, equipment, starting, terms, collisions, joints, floating }, agents))
     }
 }

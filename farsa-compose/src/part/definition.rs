@@ -16,14 +16,15 @@ use crate::part::object::{
 };
 use crate::part::scene::PartScene;
 use crate::part::sensor::Quantity;
-use crate::part::wrapper::AnyFilter;
+use crate::part::wrapper::AnyWrapper;
 
 /// Keys of a part, as the file has them.
 pub(crate) type Given = Map<String, Value>;
 /// Returns the quantity of a channel.
 type OfChannel = fn(&Given, usize) -> Quantity;
+/// Reads a wrapper from its keys.
+type Wrapping = fn(&Given) -> Result<Box<dyn AnyWrapper>, Error>;
 /// Builds a part from its keys and further arguments.
-type Wrapping = fn(&Given, usize) -> Result<Box<dyn AnyFilter>, Error>;
 type Wiring = fn(&Given, [usize; 2], f64) -> Result<Built, Error>;
 type Composing = fn(&Given, &Object) -> Result<Vec<Object>, Error>;
 

@@ -18,7 +18,8 @@ use crate::part::sensor::{Quantity, SensorPart};
 use crate::part::start::StartPart;
 use crate::part::term::TermPart;
 use crate::part::thing::ThingPart;
-use crate::part::wrapper::{AnyFilter, WrapperPart};
+use crate::part::wrapper::{AnyWrapper, WrapperPart};
+use crate::wrappers::wrappers;
 
 /// Builds parts of a kind in a world from their keys.
 macro_rules! building {
@@ -125,10 +126,10 @@ pub fn spatial_start<P: StartPart<Start: SpatialStart>>(name: &'static str) -> P
 
 /// Registers a kind of wrapper under a name.
 pub fn wrapper<P: WrapperPart>(name: &'static str) -> Part {
-    fn filter<P: WrapperPart>(given: &Given, channels: usize) -> Result<Box<dyn AnyFilter>, Error> {
-        Ok(Box::new(keys::<P>(given)?.filter(channels)?))
+    fn wrapper<P: WrapperPart>(given: &Given) -> Result<Box<dyn AnyWrapper>, Error> {
+        Ok(Box::new(keys::<P>(given)?))
     }
-    Definition::part::<P>(name, Build::Wrapper(filter::<P>))
+    Definition::part::<P>(name, Build::Wrapper(wrapper::<P>))
 }
 
 /// Registers a kind of network under a name.
@@ -159,5 +160,7 @@ pub fn robot_with_joints(name: &'static str, robot: Robot) -> Part {
 
 /// Lists the parts of the format that are registered like those of other crates.
 pub(crate) fn built_in() -> Vec<Part> {
-    vec![planar_term::<Exchanges>("exchanges")]
+    let mut parts = wrappers();
+    parts.push(planar_term::<Exchanges>("exchanges"));
+    parts
 }

@@ -8,6 +8,7 @@ use farsa_lab::{Evaluation, Outcome};
 use farsa_nn::{CtrnnLayout, CtrnnParameter};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
 
+use crate::check::registry::Registry;
 use crate::document::Document;
 use crate::parts::groups::Groups;
 use crate::parts::interventions::{TEAM_SIZE, first_output, interventions, team_sizes};
@@ -24,6 +25,7 @@ pub(crate) struct Agents {
     pub(crate) spec: NetworkSpec,
     pub(crate) ledger: Ledger,
     pub(crate) groups: Groups,
+    pub(crate) registry: Arc<Registry>,
     /// Test protocols.
     pub(crate) interventions: Arc<Interventions>,
     /// Individuals of each population, if there are several.
@@ -44,7 +46,13 @@ pub(crate) struct Agents {
 
 impl Agents {
     /// Creates robots at rest.
-    pub(crate) fn new(document: Document, spec: NetworkSpec, ledger: Ledger, groups: Groups) -> Self {
+    pub(crate) fn new(
+        document: Document,
+        spec: NetworkSpec,
+        ledger: Ledger,
+        groups: Groups,
+        registry: &Registry,
+    ) -> Self {
         let robots = groups.robots();
         let networks = vec![NormalizedController::new(spec.network.clone()); robots];
         let (x, y) = (vec![0.0; robots * spec.inputs.len()], vec![0.0; robots * spec.outputs.len()]);
@@ -56,6 +64,7 @@ impl Agents {
             spec,
             ledger,
             groups,
+            registry: Arc::new(registry.clone()),
             interventions,
             size,
             evolving,

@@ -6,6 +6,7 @@ use crate::check::registry::Registry;
 use crate::document::Wrapper;
 use crate::part::Quantity;
 use crate::part::definition::Build;
+use crate::parts::wrapping::changes;
 
 /// A quantity with its unit, the values at 0 and 1, and a flag for a linear scale between them.
 pub(crate) struct ChannelQuantity {
@@ -31,39 +32,10 @@ impl ChannelQuantity {
     }
 
     /// Appends the changes of wrappers, in this order.
-    pub(crate) fn with_wrappers<'w>(self, wrappers: impl Iterator<Item = &'w Wrapper>) -> Self {
-        match changes(wrappers) {
+    pub(crate) fn with_wrappers<'w>(self, wrappers: impl Iterator<Item = &'w Wrapper>, registry: &Registry) -> Self {
+        match changes(wrappers, registry) {
             words if words.is_empty() => self,
             words => Self { quantity: format!("{}, with {words}", self.quantity), ..self },
         }
-    }
-}
-
-/// Describes the changes of wrappers, in this order. Empty without any.
-pub(crate) fn changes<'w>(wrappers: impl Iterator<Item = &'w Wrapper>) -> String {
-    wrappers.map(change).collect::<Vec<_>>().join(", then ")
-}
-
-fn change(wrapper: &Wrapper) -> String {
-    let within = |channels: &Option<[u32; 2]>| match channels {
-        None => String::new(),
-        Some([first, last]) if first == last => format!(" in channel {first}"),
-        Some([first, last]) => format!(" in channels {first} to {last}"),
-    };
-    match wrapper {
-        Wrapper::UniformNoise { amplitude } => format!("noise of at most {amplitude}"),
-        Wrapper::NormalNoise { deviation } => format!("normal noise of deviation {deviation}"),
-        Wrapper::Delay { steps: 1 } => "a delay of 1 step".into(),
-        Wrapper::Delay { steps } => format!("a delay of {steps} steps"),
-        Wrapper::Scale { gain, offset } if *offset == 0.0 => format!("a factor of {gain}"),
-        Wrapper::Scale { gain, offset } => format!("a factor of {gain} and {offset} added"),
-        Wrapper::Saturate { low, high } => format!("ends at {low} and {high}"),
-        Wrapper::Threshold { above } => format!("1 above {above} and 0 elsewhere"),
-        Wrapper::Lesion { channels } => format!("0{}", within(channels)),
-        Wrapper::Registered { kind, .. } => format!("`{kind}`"),
-        Wrapper::Stuck { channels, value: Some(value), after } => {
-            format!("{value}{} after {after} steps", within(channels))
-        }
-        Wrapper::Stuck { channels, value: None, after } => format!("no change{} after {after} steps", within(channels)),
     }
 }

@@ -2,8 +2,8 @@
 
 use farsa_body::ports::{Channels, Motor, Sensor};
 
+use crate::parts::noise_streams::NoiseStreams;
 use crate::parts::part::Part;
-use crate::parts::wrapping::NoiseStreams;
 
 /// Names of sensors or motors, with the first channel of each and the one after the last.
 type Spans = [(String, [usize; 2])];

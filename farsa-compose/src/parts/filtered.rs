@@ -1,9 +1,10 @@
-//! A sensor or motor behind a registered filter.
+//! A sensor or motor in a wrapper.
 
 use farsa_body::ports::{Channels, Motor, Sensor};
 use farsa_num::Stream;
 
 use crate::part::wrapper::AnyFilter;
+use crate::parts::noise_streams::NoiseStreams;
 
 /// A part whose values pass a filter.
 #[derive(Clone, Debug)]
@@ -23,9 +24,12 @@ impl<T: Channels> Filtered<T> {
         Self { inner, filter, passed, start: stream, stream }
     }
 
-    /// Replaces the stream, which every reset rewinds.
-    pub(crate) fn reseed(&mut self, stream: Stream) {
-        (self.start, self.stream) = (stream, stream);
+    /// Takes a stream for the noise, which every reset rewinds.
+    pub(crate) fn reseed(&mut self, streams: &mut NoiseStreams) {
+        if self.filter.is_random() {
+            self.start = streams.take(self.inner.channels());
+            self.stream = self.start;
+        }
     }
 }
 
@@ -66,6 +70,8 @@ impl<W: ?Sized, T: Motor<W>> Motor<W> for Filtered<T> {
         let passed = &mut self.passed[..count];
         passed.copy_from_slice(&y[..count]);
         self.filter.pass(passed, &mut self.stream);
-        self.inner.drive(passed, world);
+        if !self.filter.holds() {
+            self.inner.drive(passed, world);
+        }
     }
 }

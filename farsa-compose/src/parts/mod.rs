@@ -24,7 +24,7 @@ pub(crate) mod evonet;
 pub(crate) mod eye;
 /// Infrared tables from files that a document names.
 pub(crate) mod files;
-/// A sensor or motor behind a registered filter.
+/// A sensor or motor in a wrapper.
 pub(crate) mod filtered;
 /// Groups of equal robots, and their populations.
 pub(crate) mod groups;
@@ -40,6 +40,8 @@ pub(crate) mod lessons;
 pub(crate) mod network;
 /// Channels of a robot, and the network between them.
 pub(crate) mod network_spec;
+/// Streams of the noise of wrappers.
+pub(crate) mod noise_streams;
 /// A sensor or motor with its wrappers.
 pub(crate) mod part;
 /// Functions that drive robots instead of networks.
@@ -56,5 +58,5 @@ pub(crate) mod tally;
 pub(crate) mod trainee;
 /// Conditions of success and failure.
 pub(crate) mod wanted;
-/// Wrappers of sensors and motors.
+/// Registered wrappers of sensors and motors.
 pub(crate) mod wrapping;

@@ -5,10 +5,10 @@ use farsa_lab::Error;
 use crate::check::source::Source;
 use crate::document::{Document, MotorKind};
 use crate::formula::channels::ChannelNames;
-use crate::parts::channel_quantity::changes;
 use crate::parts::ends::Ends;
 use crate::parts::network::{AnyNetwork, Named};
 use crate::parts::searched::Searched;
+use crate::parts::wrapping::changes;
 
 /// Names of sensors or motors, with the first channel of each and the one after the last.
 pub(crate) type Spans = Vec<(String, [usize; 2])>;
@@ -48,9 +48,12 @@ impl NetworkSpec {
             }
             spans(named.into_iter().zip(channels))
         };
-        let sensors = document.sensors.iter().map(|sensor| sensor.enabled.then(|| changes(sensor.wrappers.iter())));
+        let registry = &source.registry;
+        let sensors = document.sensors.iter();
+        let sensors = sensors.map(|sensor| sensor.enabled.then(|| changes(sensor.wrappers.iter(), registry)));
         let sensors = spans(sensors.collect(), &source.names.sensors, sensor_channels);
-        let motors = document.motors.iter().map(|motor| motor.enabled.then(|| changes(motor.wrappers.iter().rev())));
+        let motors = document.motors.iter();
+        let motors = motors.map(|motor| motor.enabled.then(|| changes(motor.wrappers.iter().rev(), registry)));
         let motors = spans(motors.collect(), &source.names.motors, motor_channels);
         let [inputs, outputs] = [&sensors, &motors].map(|spans| spans.last().map_or(0, |(_, [_, end])| *end));
         for (list, channels) in [("sensors", inputs), ("motors", outputs)] {

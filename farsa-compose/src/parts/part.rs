@@ -5,14 +5,16 @@ use farsa_lab::Error;
 
 use crate::check::source::Source;
 use crate::document::Wrapper;
+use crate::parts::filtered::Filtered;
+use crate::parts::noise_streams::NoiseStreams;
 use crate::parts::sizes::MemoryBudget;
-use crate::parts::wrapping::{NoiseStreams, Wrapped, around};
+use crate::parts::wrapping::wrap;
 
 /// A sensor or motor of kind `K`, bare or in a wrapper around another part.
 #[derive(Clone, Debug)]
 pub(crate) enum Part<K> {
     Bare(K),
-    Wrapped(Wrapped<Self>),
+    Wrapped(Filtered<Box<Self>>),
 }
 
 impl<K> Part<K> {
@@ -20,7 +22,7 @@ impl<K> Part<K> {
     pub(crate) fn kind(&self) -> &K {
         match self {
             Self::Bare(kind) => kind,
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner().kind()),
+            Self::Wrapped(wrapped) => wrapped.inner().kind(),
         }
     }
 
@@ -28,7 +30,7 @@ impl<K> Part<K> {
     pub(crate) fn kind_mut(&mut self) -> &mut K {
         match self {
             Self::Bare(kind) => kind,
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.inner_mut().kind_mut()),
+            Self::Wrapped(wrapped) => wrapped.inner_mut().kind_mut(),
         }
     }
 }
@@ -48,7 +50,7 @@ impl<K: Channels> Part<K> {
             let mut part = Self::Bare(make(kind, &path)?);
             for (number, wrapper) in wrappers.iter().enumerate() {
                 let path = format!("{path}/wrappers/{number}");
-                part = Self::Wrapped(Wrapped::new(part, wrapper, budget, &path, source)?);
+                part = Self::Wrapped(wrap(part, wrapper, budget, &path, source)?);
             }
             parts.push(part);
         }
@@ -58,18 +60,8 @@ impl<K: Channels> Part<K> {
     /// Assigns streams to the noise, from the outer wrapper to the inner one.
     pub(crate) fn reseed(&mut self, streams: &mut NoiseStreams) {
         let Self::Wrapped(wrapped) = self else { return };
-        match wrapped {
-            Wrapped::Noisy(noisy) => {
-                let stream = streams.take(noisy.channels());
-                noisy.reseed(stream);
-            }
-            Wrapped::Registered(filtered) => {
-                let stream = streams.take(filtered.channels());
-                filtered.reseed(stream);
-            }
-            _ => {}
-        }
-        around!(wrapped, part => part.inner_mut().reseed(streams));
+        wrapped.reseed(streams);
+        wrapped.inner_mut().reseed(streams);
     }
 }
 
@@ -77,14 +69,14 @@ impl<K: Channels> Channels for Part<K> {
     fn channels(&self) -> usize {
         match self {
             Self::Bare(kind) => kind.channels(),
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.channels()),
+            Self::Wrapped(wrapped) => wrapped.channels(),
         }
     }
 
     fn reset(&mut self) {
         match self {
             Self::Bare(kind) => kind.reset(),
-            Self::Wrapped(wrapped) => around!(wrapped, part => part.reset()),
+            Self::Wrapped(wrapped) => wrapped.reset(),
         }
     }
 }
@@ -112,11 +104,11 @@ impl<W, K: Motor<W>> Motor<W> for Part<K> {
 }
 
 #[inline(never)]
-fn read<W, K: Sensor<W>>(wrapped: &mut Wrapped<Part<K>>, world: &W, out: &mut [f32]) {
-    around!(wrapped, part => part.read(world, out));
+fn read<W, K: Sensor<W>>(wrapped: &mut Filtered<Box<Part<K>>>, world: &W, out: &mut [f32]) {
+    wrapped.read(world, out);
 }
 
 #[inline(never)]
-fn drive<W, K: Motor<W>>(wrapped: &mut Wrapped<Part<K>>, y: &[f32], world: &mut W) {
-    around!(wrapped, part => part.drive(y, world));
+fn drive<W, K: Motor<W>>(wrapped: &mut Filtered<Box<Part<K>>>, y: &[f32], world: &mut W) {
+    wrapped.drive(y, world);
 }
