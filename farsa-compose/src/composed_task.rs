@@ -11,11 +11,16 @@ use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::{Controller as _, Leak};
 use farsa_view::{Channel, Schema};
 
-use crate::document::{MotorKind, SensorKind};
+use crate::document::{Motor, Sensor};
+use crate::part::{PartScene, Quantity};
 use crate::parts::agents::Agents;
-use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::evonet::EvonetNetwork;
 use crate::parts::network::AnyNetwork;
+use crate::parts::network_spec::Spans;
+use crate::parts::wrapping::changes;
+
+/// Describes a channel in a scene.
+type Describe = Box<dyn Fn(usize, &PartScene<'_>) -> Quantity>;
 
 /// Agents in a world of some kind.
 pub(crate) trait Body: Clone + Send + 'static {
@@ -39,11 +44,8 @@ pub(crate) trait Body: Clone + Send + 'static {
         None
     }
 
-    /// Describes the quantity of a sensor channel.
-    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity;
-
-    /// Describes the quantity of a motor channel.
-    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity;
+    /// Calls a function with the scene of a robot's parts.
+    fn in_scene(&self, robot: usize, call: &mut dyn FnMut(&PartScene<'_>));
 }
 
 /// Task of an experiment over the episode of its world.
@@ -155,78 +157,86 @@ impl<E: Body> Exports for ComposedTask<E> {
 }
 
 impl<E: Body> ComposedTask<E> {
-    /// Adds the quantity of each sensor and motor to a schema. It is also the label of a joint's channel, unless the
-    /// document names it.
+    /// Adds the quantity of each sensor and motor to a schema. Some are also labels of channels, unless the document
+    /// names them.
     fn explained(&self, mut schema: Schema) -> Schema {
-        let Agents { document, spec, .. } = self.0.agents();
-        let sensors = document.sensors.iter().filter(|sensor| sensor.enabled).map(|sensor| {
-            let of_joint = matches!(sensor.kind, SensorKind::JointPosition { .. } | SensorKind::JointSpeed { .. });
-            of_joint && sensor.channels.is_none()
-        });
-        let motors = document.motors.iter().filter(|motor| motor.enabled).map(|motor| {
-            use MotorKind::{JointTorque, JointVelocity, Muscles, Servo};
-            let of_joint =
-                matches!(motor.kind, JointVelocity { .. } | JointTorque { .. } | Servo { .. } | Muscles { .. });
-            of_joint && motor.channels.is_none()
-        });
-        let each = |labelled: bool, [first, end]: [usize; 2]| std::iter::repeat_n(labelled, end - first);
-        let of_sensors = sensors.zip(&spec.sensors).flat_map(|(labelled, (_, span))| each(labelled, *span));
-        let of_motors = motors.zip(&spec.motors).flat_map(|(labelled, (_, span))| each(labelled, *span));
-        let read = self.sensors(0).into_iter().map(|sensor| match sensor.reads {
-            SensorReading::Quantity { quantity, .. } => quantity,
-            _ => String::new(),
-        });
-        let driven = self.motors(0).into_iter().map(|motor| match motor.drives {
-            MotorDrive::Quantity { quantity, .. } => quantity,
-            _ => String::new(),
-        });
+        let document = &self.0.agents().document;
+        let named = |channels: &Option<Vec<String>>, quantity: Quantity| Quantity {
+            is_label: quantity.is_label && channels.is_none(),
+            ..quantity
+        };
+        let sensors = document.sensors.iter().filter(|sensor| sensor.enabled).zip(self.sensed(0));
+        let sensors = sensors.flat_map(|(sensor, read)| read.into_iter().map(|read| named(&sensor.channels, read)));
+        let motors = document.motors.iter().filter(|motor| motor.enabled).zip(self.driven(0));
+        let motors = motors.flat_map(|(motor, driven)| driven.into_iter().map(|driven| named(&motor.channels, driven)));
         let channels = schema.sensors.iter_mut().chain(&mut schema.outputs);
-        for ((channel, quantity), labelled) in channels.zip(read.chain(driven)).zip(of_sensors.chain(of_motors)) {
-            if labelled {
-                channel.label.clone_from(&quantity);
+        for (channel, quantity) in channels.zip(sensors.chain(motors)) {
+            if quantity.is_label {
+                channel.label.clone_from(&quantity.text);
             }
-            channel.about = quantity;
+            channel.about = quantity.text;
         }
         schema
     }
 
-    fn sensors(&self, robot: usize) -> Vec<SensorExport> {
+    /// Describes the channels of each sensor of a robot.
+    fn sensed(&self, robot: usize) -> Vec<Vec<Quantity>> {
         let Agents { document, spec, registry, .. } = self.0.agents();
-        let sensed = |kind: &SensorKind, channel| match kind {
-            SensorKind::Registered { kind, keys } => ChannelQuantity::registered(registry, kind, keys, channel),
-            kind => self.0.sensed(kind, channel, robot),
+        let part = |sensor: &Sensor| -> (Option<Describe>, String) {
+            let part = registry.sensor(&sensor.kind);
+            let describe =
+                part.map(|part| -> Describe { Box::new(move |channel, scene| part.quantity(channel, scene)) });
+            (describe, changes(sensor.wrappers.iter(), registry))
         };
-        let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(&spec.sensors);
-        let meanings = enabled.flat_map(|(sensor, (_, [first, end]))| {
-            (0..end - first)
-                .map(move |channel| sensed(&sensor.kind, channel).with_wrappers(sensor.wrappers.iter(), registry))
+        let enabled = document.sensors.iter().filter(|sensor| sensor.enabled);
+        self.described(robot, &enabled.map(part).collect::<Vec<_>>(), &spec.sensors)
+    }
+
+    /// Describes the channels of each motor of a robot.
+    fn driven(&self, robot: usize) -> Vec<Vec<Quantity>> {
+        let Agents { document, spec, registry, .. } = self.0.agents();
+        let part = |motor: &Motor| -> (Option<Describe>, String) {
+            let part = registry.motor(&motor.kind);
+            let describe =
+                part.map(|part| -> Describe { Box::new(move |channel, scene| part.quantity(channel, scene)) });
+            (describe, changes(motor.wrappers.iter().rev(), registry))
+        };
+        let enabled = document.motors.iter().filter(|motor| motor.enabled);
+        self.described(robot, &enabled.map(part).collect::<Vec<_>>(), &spec.motors)
+    }
+
+    /// Describes the channels of parts with their changes by wrappers.
+    fn described(&self, robot: usize, parts: &[(Option<Describe>, String)], spans: &Spans) -> Vec<Vec<Quantity>> {
+        let mut all = Vec::new();
+        self.0.in_scene(robot, &mut |scene| {
+            all = parts
+                .iter()
+                .zip(spans)
+                .map(|((describe, changes), (_, [first, end]))| {
+                    let quantity =
+                        |channel| describe.as_ref().map(|describe| describe(channel, scene)).unwrap_or_default();
+                    (0..end - first).map(|channel| quantity(channel).with(changes)).collect()
+                })
+                .collect();
         });
+        all
+    }
+
+    fn sensors(&self, robot: usize) -> Vec<SensorExport> {
         let channel =
-            |(name, ChannelQuantity { quantity, unit, ends: [zero, one], linear }): (&String, ChannelQuantity)| {
-                SensorExport {
-                    name: name.clone(),
-                    reads: SensorReading::Quantity { quantity, unit, zero, one, linear },
-                }
+            |(name, Quantity { text, unit, ends: [zero, one], is_linear, .. }): (&String, Quantity)| SensorExport {
+                name: name.clone(),
+                reads: SensorReading::Quantity { quantity: text, unit, zero, one, linear: is_linear },
             };
-        spec.inputs.iter().zip(meanings).map(channel).collect()
+        self.0.agents().spec.inputs.iter().zip(self.sensed(robot).into_iter().flatten()).map(channel).collect()
     }
 
     fn motors(&self, robot: usize) -> Vec<MotorExport> {
-        let Agents { document, spec, registry, .. } = self.0.agents();
-        let driven = |kind: &MotorKind, channel| match kind {
-            MotorKind::Registered { kind, keys } => ChannelQuantity::registered(registry, kind, keys, channel),
-            kind => self.0.driven(kind, channel, robot),
+        let channel = |(name, Quantity { text, unit, ends: [zero, one], .. }): (&String, Quantity)| MotorExport {
+            name: name.clone(),
+            drives: MotorDrive::Quantity { quantity: text, unit, zero, one },
         };
-        let enabled = document.motors.iter().filter(|motor| motor.enabled).zip(&spec.motors);
-        let meanings = enabled.flat_map(|(motor, (_, [first, end]))| {
-            (0..end - first)
-                .map(move |channel| driven(&motor.kind, channel).with_wrappers(motor.wrappers.iter().rev(), registry))
-        });
-        let channel =
-            |(name, ChannelQuantity { quantity, unit, ends: [zero, one], .. }): (&String, ChannelQuantity)| {
-                MotorExport { name: name.clone(), drives: MotorDrive::Quantity { quantity, unit, zero, one } }
-            };
-        spec.outputs.iter().zip(meanings).map(channel).collect()
+        self.0.agents().spec.outputs.iter().zip(self.driven(robot).into_iter().flatten()).map(channel).collect()
     }
 }
 

@@ -12,9 +12,9 @@ use crate::arena::ArenaWorld;
 use crate::arena::episode::ArenaEpisode;
 use crate::arena::setup::Setup;
 use crate::arena::start_contacts;
+use crate::built_in::registry;
 use crate::check::completed::{complete, expand};
 use crate::check::embed::embedded;
-use crate::check::registry::Registry;
 use crate::check::settings::{Entry, apply, entries};
 use crate::check::source::{Names, Source};
 use crate::check::walk;
@@ -128,7 +128,7 @@ impl ComposedExperiment {
         folder: Option<&Path>,
         vocabulary: Vocabulary<'_>,
     ) -> Result<Self, Error> {
-        let registry = Registry::new(vocabulary.parts)?;
+        let registry = registry(vocabulary.parts)?;
         let (value, mut source) = walk::read(file, text, &registry.schemas[0])?;
         (source.limits, source.registry) = (limits, registry);
         let mut document: Document =

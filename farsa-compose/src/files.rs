@@ -5,7 +5,7 @@ use std::path::Path;
 use farsa_lab::advanced::{ExperimentFiles, Part, Template, Vocabulary};
 use farsa_lab::{Error, Experiment};
 
-use crate::check::registry::Registry;
+use crate::built_in::registry;
 use crate::experiment::ComposedExperiment;
 use crate::limits::Limits;
 
@@ -63,5 +63,5 @@ fn read(
 }
 
 fn as_text(parts: &[Part]) -> Result<String, Error> {
-    Ok(format!("{:#}\n", Registry::new(parts)?.schemas[0]))
+    Ok(format!("{:#}\n", registry(parts)?.schemas[0]))
 }

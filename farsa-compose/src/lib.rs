@@ -3,6 +3,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod arena;
+mod built_in;
 mod check;
 mod composed_task;
 pub mod document;
@@ -11,12 +12,15 @@ mod files;
 mod formula;
 mod jointed;
 mod limits;
+mod motors;
 mod name;
 pub mod part;
 mod parts;
+mod sensors;
+mod terms;
 mod wrappers;
 
-pub use check::registry::schema;
+pub use built_in::schema;
 pub use experiment::ComposedExperiment;
 pub use files::FILES;
 pub use limits::Limits;

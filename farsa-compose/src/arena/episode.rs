@@ -1,7 +1,7 @@
 //! An episode of robots in an arena.
 
 use crate::arena::ArenaWorld;
-use farsa_body::ports::{BodyId, Channels as _, PairId};
+use farsa_body::ports::{BodyId, PairId};
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
 use farsa_lab::advanced::seconds;
@@ -10,18 +10,19 @@ use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Schema};
 
-use crate::arena::channel_quantity::{driven, sensed};
+use crate::arena::registered::PartOfPlanar;
 use crate::arena::scene::Scene;
-use crate::arena::sensing::Sensing;
 use crate::arena::setup::Setup;
 use crate::arena::term::{Numbers, Rows, Term};
+use crate::check::source::Source;
 use crate::composed_task::Body;
-use crate::document::{Ending, MotorKind, SensorKind};
+use crate::document::Ending;
+use crate::part::PartScene;
 use crate::parts::agents::Agents;
-use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::network_spec::NetworkSpec;
 use crate::parts::noise_streams::NoiseStreams;
 use crate::parts::tally::Tally;
+use crate::sensors::infrared::InfraredSensor;
 
 /// Robots in a trial, each with a copy of one network.
 #[derive(Clone, Debug)]
@@ -273,12 +274,15 @@ impl Body for ArenaEpisode {
         self.setup.scene.robots[0].description()
     }
 
-    fn sensed(&self, kind: &SensorKind, channel: usize, robot: usize) -> ChannelQuantity {
-        sensed(kind, channel, &self.setup.scene.robots[robot])
-    }
-
-    fn driven(&self, kind: &MotorKind, channel: usize, robot: usize) -> ChannelQuantity {
-        driven(kind, channel, &self.setup.scene.robots[robot])
+    fn in_scene(&self, robot: usize, call: &mut dyn FnMut(&PartScene<'_>)) {
+        let source = Source::default();
+        call(&PartScene::new(&PartOfPlanar {
+            scene: &self.setup.scene,
+            robot,
+            files: None,
+            path: "",
+            source: &source,
+        }));
     }
 }
 
@@ -343,11 +347,10 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
         let robots = self.setup.members.iter().zip(self.agents.x.chunks_exact(inputs)).enumerate();
         for (robot, (member, x)) in robots.filter(|(robot, _)| self.is_alive(*robot)) {
             for ([number, first], drawing) in &member.drawn {
-                let x = match member.equipment.sensors[*number].kind() {
-                    // Sensors in groups have fewer channels than rays.
-                    Sensing::Rays(infrared) if infrared.channels() < drawing.count() => infrared.ring(),
-                    _ => &x[*first..*first + drawing.count()],
-                };
+                // Sensors in groups have fewer channels than rays.
+                let infrared = member.equipment.sensors[*number].kind().infrared();
+                let ring = infrared.and_then(InfraredSensor::ring);
+                let x = ring.unwrap_or_else(|| &x[*first..*first + drawing.count()]);
                 drawing.record(world.pose(member.parts.body), x, robot != self.agents.watched, recorder);
             }
         }

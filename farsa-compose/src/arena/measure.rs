@@ -5,7 +5,7 @@ use farsa_lab::Error;
 use farsa_num::Scalar;
 
 use crate::arena::registered::{self, PartOfPlanar};
-use crate::arena::scene::{Scene, Thing};
+use crate::arena::scene::{Scene, Thing, one_body};
 use crate::check::source::Source;
 use crate::document::RewardKind;
 use crate::formula::channels::Channels;
@@ -101,7 +101,7 @@ impl Measure {
             Ok((measure(radius, within), Some(body)))
         };
         if let RewardKind::Registered { kind, keys } = kind {
-            let term = |robot| registered::term(kind, keys, PartOfPlanar { scene, robot, path, source });
+            let term = |robot| registered::term(kind, keys, PartOfPlanar { scene, robot, files: None, path, source });
             let terms = (0..scene.robots.len()).map(term).collect::<Result<_, _>>()?;
             return Ok((Self::Registered(terms), None));
         }
@@ -214,19 +214,4 @@ fn check(kind: &RewardKind, path: &str, source: &Source) -> Result<(), Error> {
         _ => return Ok(()),
     };
     one_body(body.as_ref(), bodies, point, path, source)
-}
-
-/// Rejects named bodies and points, because a robot on wheels is one body.
-pub(crate) fn one_body(
-    body: Option<&String>,
-    bodies: &[String],
-    point: &[f64; 3],
-    path: &str,
-    source: &Source,
-) -> Result<(), Error> {
-    if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
-        return Ok(());
-    }
-    Err(source
-        .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
 }

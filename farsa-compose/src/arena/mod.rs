@@ -2,10 +2,6 @@
 
 /// Abilities that a world must have.
 mod arena_world;
-/// Quantities of channels.
-mod channel_quantity;
-/// Motors, with their wrappers.
-pub(crate) mod driving;
 /// Episode.
 pub(crate) mod episode;
 /// Field that foragers share.
@@ -20,8 +16,6 @@ pub(crate) mod measure;
 mod registered;
 /// Arena, and the bodies that names refer to.
 pub(crate) mod scene;
-/// Sensors, with their wrappers.
-pub(crate) mod sensing;
 /// Scene with the sensors, motors and terms of its robots.
 pub(crate) mod setup;
 /// Overlaps at the start of a trial.

@@ -1,21 +1,46 @@
 //! Registered parts.
 
+use std::cell::RefCell;
+
+use farsa_body::Pose;
 use farsa_body::ports::{ActuatorId, BodyId, Channels, JointId, Motor, PairId, Sensor};
 use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::Point;
 use farsa_lab::Error;
 
 use crate::arena::ArenaWorld;
-use crate::arena::scene::{Scene, Thing};
+use crate::arena::field::Forager;
+use crate::arena::scene::{Scene, Thing, one_body};
 use crate::check::completed::builder;
 use crate::check::source::Source;
+use crate::document::{MotorKind, SensorKind};
 use crate::part::PartScene;
 use crate::part::definition::{Build, Given};
+use crate::part::files::Files;
+use crate::part::named_point::NamedPoint;
 use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
-use crate::part::scene::{Area, Surroundings};
+use crate::part::scene::{Area, JointAbout, Surroundings, WITH_JOINTS};
+use crate::part::wiring::Wiring;
+use crate::sensors::forager::ForagerSensor;
+use crate::sensors::infrared::InfraredSensor;
 
 /// A registered sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct RegisteredSensor(pub(crate) Box<dyn PlanarSensor>);
+
+impl RegisteredSensor {
+    /// Updates a sensor of the robot's own state.
+    pub(crate) fn feel(&mut self, forager: &Forager) {
+        if let Some(sensor) = (*self.0).as_any_mut().downcast_mut::<ForagerSensor>() {
+            sensor.feel(forager.energy, forager.carried);
+        }
+    }
+
+    /// Gets the infrared sensors.
+    pub(crate) fn infrared(&self) -> Option<&InfraredSensor> {
+        (*self.0).as_any().downcast_ref()
+    }
+}
 
 impl Channels for RegisteredSensor {
     fn channels(&self) -> usize {
@@ -35,21 +60,33 @@ impl<W: ArenaWorld> Sensor<W> for RegisteredSensor {
 
 /// A registered motor.
 #[derive(Clone, Debug)]
-pub(crate) struct RegisteredMotor(pub(crate) Box<dyn PlanarMotor>);
+pub(crate) struct RegisteredMotor {
+    motor: Box<dyn PlanarMotor>,
+    /// Values at rest [channels].
+    rest: Vec<f32>,
+}
+
+impl RegisteredMotor {
+    /// Stops the motor and writes the corresponding values [channels].
+    pub(crate) fn rest<W: ArenaWorld>(&mut self, y: &mut [f32], world: &mut W) {
+        y.copy_from_slice(&self.rest);
+        self.drive(y, world);
+    }
+}
 
 impl Channels for RegisteredMotor {
     fn channels(&self) -> usize {
-        self.0.channels()
+        self.motor.channels()
     }
 
     fn reset(&mut self) {
-        self.0.reset();
+        self.motor.reset();
     }
 }
 
 impl<W: ArenaWorld> Motor<W> for RegisteredMotor {
     fn drive(&mut self, y: &[f32], world: &mut W) {
-        world.drive(&mut *self.0, y);
+        world.drive(&mut *self.motor, y);
     }
 }
 
@@ -58,9 +95,19 @@ impl<W: ArenaWorld> Motor<W> for RegisteredMotor {
 pub(crate) struct PartOfPlanar<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) robot: usize,
+    /// Files of the document, for sensors.
+    pub(crate) files: Option<&'s Files<'s>>,
     /// Path of the part in the document.
     pub(crate) path: &'s str,
     pub(crate) source: &'s Source,
+}
+
+impl PartOfPlanar<'_> {
+    /// Returns the body of the robot, or an error for names and points of bodies.
+    fn only_body(&self, body: Option<&String>, bodies: &[String], point: [f64; 3]) -> Result<BodyId, Error> {
+        one_body(body, bodies, &point, self.path, self.source)?;
+        Ok(self.scene.parts(self.robot).body)
+    }
 }
 
 impl Surroundings for PartOfPlanar<'_> {
@@ -93,7 +140,9 @@ impl Surroundings for PartOfPlanar<'_> {
         if names.is_empty() {
             return Ok(parts.wheels.to_vec());
         }
-        names.iter().map(|name| wheel(name, &parts, self.path, self.source)).collect()
+        let place = |index: usize| format!("{}/joints/{index}", self.path);
+        let named = names.iter().enumerate();
+        named.map(|(index, name)| wheel(name, &parts, &place(index), self.source)).collect()
     }
 
     fn actuators(&self, joints: &[String]) -> Result<Vec<ActuatorId>, Error> {
@@ -112,21 +161,100 @@ impl Surroundings for PartOfPlanar<'_> {
     fn mobile_robot(&self) -> Option<&MobileRobot> {
         self.scene.robots.get(self.robot)
     }
+
+    fn parts(&self) -> Option<MobileParts> {
+        Some(self.scene.parts(self.robot))
+    }
+
+    fn error_at(&self, key: &str, why: String) -> Error {
+        self.source.wrong(&format!("{}/{key}", self.path), why)
+    }
+
+    fn path(&self) -> &str {
+        self.path
+    }
+
+    fn line(&self) -> String {
+        self.source.of(self.path)
+    }
+
+    fn files(&self) -> Option<&Files<'_>> {
+        self.files
+    }
+
+    fn has_food(&self) -> bool {
+        self.scene.has_food
+    }
+
+    fn shows(&self) -> bool {
+        true
+    }
+
+    fn frame(&self, body: Option<&String>, _: &str) -> Result<(BodyId, Pose<f64>), Error> {
+        Ok((self.only_body(body, &[], [0.0; 3])?, Pose::identity()))
+    }
+
+    fn point(&self, body: Option<&String>, point: [f64; 3]) -> Result<Point, Error> {
+        self.only_body(body, &[], point).map(Point::origin)
+    }
+
+    fn target(&self, name: &str, key: &str) -> Result<NamedPoint, Error> {
+        let body = self.scene.body(name, &format!("{}/{key}", self.path), self.source)?;
+        Ok(NamedPoint::Body(Point::origin(body)))
+    }
+
+    fn touching(&self, bodies: &[String], with: Option<&String>) -> Result<Vec<PairId>, Error> {
+        // The pair with the number of a body covers all contacts of that body.
+        Ok(vec![PairId(self.only_body(with, bodies, [0.0; 3])?.0)])
+    }
+
+    fn called(&self, _: Option<&String>) -> String {
+        "the robot".into()
+    }
+
+    fn body_name(&self, _: BodyId) -> &str {
+        &self.scene.robots[self.robot].name
+    }
+
+    fn joint_name(&self, joint: JointId) -> &str {
+        WHEELS[usize::from(joint == self.scene.parts(self.robot).wheels[1])]
+    }
+
+    fn range(&self, _: JointId) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    }
+
+    fn joint(&self, names: &[String], channel: usize, _: &dyn Fn(JointId) -> bool) -> JointAbout {
+        let name = names.get(channel).map_or(WHEELS[channel % 2], String::as_str).replace('-', " ");
+        JointAbout { name, range: [0.0, 1.0], units: ["rad", "rad/s", "N m"], torque: None }
+    }
+
+    fn fitting(&self, names: &[String], _: &dyn Fn(JointId) -> bool) -> Result<Vec<JointId>, Error> {
+        self.joints(names)
+    }
+
+    fn wiring(&self) -> Wiring {
+        Wiring::default()
+    }
+
+    fn open_wiring(&self) -> Option<&RefCell<Wiring>> {
+        None
+    }
 }
 
+/// Names of the joints.
+const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
+
 /// Returns a wheel by name.
-pub(crate) fn wheel(name: &str, parts: &MobileParts, path: &str, source: &Source) -> Result<JointId, Error> {
-    const WHEELS: [&str; 2] = ["left-wheel", "right-wheel"];
+fn wheel(name: &str, parts: &MobileParts, path: &str, source: &Source) -> Result<JointId, Error> {
     Ok(parts.wheels[source.position(WHEELS.into_iter(), ("joint", name), path)?])
 }
 
-/// Reason against a part of the other robots.
-const OTHER: &str = "is for robots with joints; this one is on wheels";
-
 /// Builds a registered sensor in a scene.
-pub(crate) fn sensor(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<RegisteredSensor, Error> {
+pub(crate) fn sensor(given: &SensorKind, scene: PartOfPlanar<'_>) -> Result<RegisteredSensor, Error> {
+    let SensorKind { kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), WITH_JOINTS, |build| match build {
         Build::Sensor((build, _), _) => Some(*build),
         _ => None,
     });
@@ -135,20 +263,23 @@ pub(crate) fn sensor(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Resul
 }
 
 /// Builds a registered motor in a scene.
-pub(crate) fn motor(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<RegisteredMotor, Error> {
+pub(crate) fn motor(given: &MotorKind, scene: PartOfPlanar<'_>) -> Result<RegisteredMotor, Error> {
+    let MotorKind { kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
-        Build::Motor((build, _), _) => Some(*build),
+    let build = builder((kind, path, source), WITH_JOINTS, |build| match build {
+        Build::Motor((build, _), read) => Some(build.map(|build| (build, *read))),
         _ => None,
     });
-    let build = build?;
-    build(keys, &PartScene::new(&scene)).map(RegisteredMotor).map_err(|error| source.at(path, error))
+    let (build, read) = build?;
+    let motor = build(keys, &PartScene::new(&scene)).map_err(|error| source.at(path, error))?;
+    let part = read(keys).map_err(|error| source.at(path, error))?;
+    Ok(RegisteredMotor { rest: (0..motor.channels()).map(|channel| part.rest(channel)).collect(), motor })
 }
 
 /// Builds a registered term in a scene.
 pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarTerm>, Error> {
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), WITH_JOINTS, |build| match build {
         Build::Term((build, _)) => Some(*build),
         _ => None,
     });
@@ -159,7 +290,7 @@ pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<
 /// Builds a registered placement in a scene.
 pub(crate) fn start(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarStart>, Error> {
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), WITH_JOINTS, |build| match build {
         Build::Start((build, _)) => Some(*build),
         _ => None,
     });

@@ -74,6 +74,8 @@ pub(crate) struct Scene {
     things: Vec<(String, Thing)>,
     /// Number of things that are not robots.
     standing: usize,
+    /// True with the section `foraging`.
+    pub(crate) has_food: bool,
 }
 
 /// A movable box.
@@ -189,7 +191,8 @@ impl Scene {
                 things.push((group.to_owned(), thing));
             }
         }
-        Ok(Self { robots, groups, size: world.size, things, standing, arena, blocks })
+        let has_food = document.foraging.is_some();
+        Ok(Self { robots, groups, size: world.size, things, standing, arena, blocks, has_food })
     }
 
     /// Returns the thing of a name at a path of the document.
@@ -377,4 +380,19 @@ fn mobile_robot(robot: &Robot, source: &Source) -> MobileRobot {
     // From m/s to rad/s, v / r.
     mobile.max_wheel_speed = robot.speed.map_or(mobile.max_wheel_speed, |speed| speed / mobile.wheel_radius);
     mobile
+}
+
+/// Rejects named bodies and points, because a robot on wheels is one body.
+pub(crate) fn one_body(
+    body: Option<&String>,
+    bodies: &[String],
+    point: &[f64; 3],
+    path: &str,
+    source: &Source,
+) -> Result<(), Error> {
+    if body.is_none() && bodies.is_empty() && *point == [0.0; 3] {
+        return Ok(());
+    }
+    Err(source
+        .wrong(path, "names a body or point; a robot on wheels is one body, and only robots with joints have more"))
 }

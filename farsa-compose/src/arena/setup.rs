@@ -2,24 +2,23 @@
 
 use crate::arena::ArenaWorld;
 use farsa_body::ports::{BodyId, Channels as _};
-use farsa_body::robots::MobileRobot;
 use farsa_body::sensors::infrared::InfraredDrawing;
 use farsa_lab::Error;
 
-use crate::arena::driving::{Driving, motor};
 use crate::arena::field::Field;
+use crate::arena::registered::{self, PartOfPlanar, RegisteredMotor, RegisteredSensor};
 use crate::arena::scene::{Scene, Thing};
-use crate::arena::sensing::{Sensing, sensor};
 use crate::arena::starting::Starting;
 use crate::arena::term::Term;
 use crate::check::source::Source;
-use crate::document::{Document, Ending, MotorKind, Reward, SensorKind, TestProtocol};
+use crate::document::{Document, Ending, Reward, TestProtocol};
 use crate::formula::compile::Quantity;
 use crate::part::Area;
+use crate::part::files::Files;
 use crate::parts::agents::Agents;
 use crate::parts::conditions::FormulaConditions;
+use crate::parts::constant_fitness::pulls;
 use crate::parts::equipment::Equipment;
-use crate::parts::files::Files;
 use crate::parts::ledger::Ledger;
 use crate::parts::network_spec::{NetworkSpec, Spans};
 use crate::parts::part::Part;
@@ -45,7 +44,7 @@ pub(crate) struct Setup {
 #[derive(Clone, Debug)]
 pub(crate) struct Member {
     pub(crate) parts: farsa_body::robots::MobileParts,
-    pub(crate) equipment: Equipment<Sensing, Driving>,
+    pub(crate) equipment: Equipment<RegisteredSensor, RegisteredMotor>,
     /// Infrared sensors in recordings, with their number among the sensors and their first channel.
     pub(crate) drawn: Vec<([usize; 2], InfraredDrawing)>,
 }
@@ -66,18 +65,21 @@ impl Setup {
         if document.robot.is_none() && document.protocols.contains(&TestProtocol::TeamSize) {
             return Err(source.wrong("/protocols", "has `team-size`, which is for one group of robots"));
         }
-        let infrared = scene.robots.iter().map(|robot| robot.infrared.angles.len() * robot.infrared.rays).sum();
-        check_parts(&document, scene.robots.len(), infrared, source)?;
-        let (mut files, mut budget) = (Files::new(&document.files), MemoryBudget::new(source.limits));
+        check_parts(&document, &scene.robots.iter().map(Some).collect::<Vec<_>>(), source)?;
+        let (files, mut budget) = (Files::new(&document.files), MemoryBudget::new(source.limits));
         let mut members = Vec::new();
         for robot in 0..scene.robots.len() {
             let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
-            let make = |kind, path: &str| sensor(kind, &scene, robot, path, &mut files, source);
+            let make = |kind, path: &str| {
+                registered::sensor(kind, PartOfPlanar { scene: &scene, robot, files: Some(&files), path, source })
+            };
             let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
             let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
-            let make = |kind, path: &str| motor(kind, &scene, robot, path, source);
+            let make = |kind, path: &str| {
+                registered::motor(kind, PartOfPlanar { scene: &scene, robot, files: Some(&files), path, source })
+            };
             let motors = Part::list("motors", motors, make, &mut budget, source)?;
-            let drawn = drawn(&document, &scene.robots[robot], &sensors);
+            let drawn = drawn(&sensors);
             members.push(Member { parts: scene.parts(robot), equipment: Equipment { sensors, motors }, drawn });
         }
         alike(&members, &scene, &document, source)?;
@@ -99,7 +101,7 @@ impl Setup {
         };
         let foraging = foraging(&document, &scene, of_foraging, source)?;
         // Positions of things are constant in a trial unless robots carry or push them, or a robot is the thing.
-        let moving = document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {})
+        let moving = pulls(&document, &source.registry)
             || !scene.blocks.is_empty()
             || terms.iter().any(|term| term.is_about_robot(&scene));
         let starting = Starting::new(&document, &scene, source)?;
@@ -133,11 +135,8 @@ fn foraging(
     source: &Source,
 ) -> Result<Option<(BodyId, Field)>, Error> {
     let Some(foraging) = &document.foraging else {
-        let felt = |kind: &SensorKind| matches!(kind, SensorKind::Energy {} | SensorKind::Carried {});
-        let sensor =
-            document.sensors.iter().position(|sensor| felt(&sensor.kind)).map(|index| format!("/sensors/{index}"));
         let ending = document.episode.ends.contains(&Ending::Death).then(|| "/episode/ends".into());
-        return match sensor.or(term).or(ending) {
+        return match term.or(ending) {
             Some(path) => Err(source.wrong(&path, "needs the section `foraging`, which there is not")),
             None => Ok(None),
         };
@@ -153,22 +152,12 @@ fn foraging(
 }
 
 /// Returns the infrared sensors of a robot for recordings, with the number and the first channel of each.
-fn drawn(document: &Document, robot: &MobileRobot, sensors: &[Part<Sensing>]) -> Vec<([usize; 2], InfraredDrawing)> {
-    let mut first = 0;
-    let enabled = document.sensors.iter().filter(|sensor| sensor.enabled).zip(sensors);
-    let kinds = enabled.enumerate().map(|(number, (sensor, made))| {
-        first += made.channels();
-        ([number, first - made.channels()], &sensor.kind)
+fn drawn(sensors: &[Part<RegisteredSensor>]) -> Vec<([usize; 2], InfraredDrawing)> {
+    let mut end = 0;
+    let places = sensors.iter().enumerate().map(|(number, sensor)| {
+        let first = end;
+        end += sensor.channels();
+        (sensor.kind().infrared(), [number, first])
     });
-    let infrared = kinds.filter_map(|(place, kind)| match kind {
-        SensorKind::Infrared { first: count, .. } => {
-            let mut robot = robot.clone();
-            let sensors = robot.infrared.angles.len();
-            // Without a number, all sensors of the ring are drawn.
-            robot.infrared.angles.truncate(if *count == 0 { sensors } else { *count as usize });
-            Some((place, InfraredDrawing::for_robot(&robot, robot.infrared.angles.len())))
-        }
-        _ => None,
-    });
-    infrared.collect()
+    places.filter_map(|(infrared, place)| Some((place, infrared?.drawing.clone()))).collect()
 }

@@ -149,7 +149,7 @@ impl Starting {
                     How::OneOf(Choice::new(points_of_rule?, like.as_ref(), document, index, source)?)
                 }
                 Placing::Registered { at, keys } => {
-                    let part = PartOfPlanar { scene, robot: 0, path: &path, source };
+                    let part = PartOfPlanar { scene, robot: 0, files: None, path: &path, source };
                     How::Registered(registered::start(at, keys, part)?)
                 }
                 Placing::InBox { .. } | Placing::Turned { .. } => {

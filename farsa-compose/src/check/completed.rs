@@ -3,12 +3,9 @@
 use farsa_lab::Error;
 use serde_json::{Map, Value};
 
-use crate::check::registry::place;
 use crate::check::source::Source;
-use crate::document::{
-    Document, MotorKind, NetworkKind, ObjectKind, Placing, RewardKind, RobotKind, SensorKind, Wrapper,
-};
-use crate::part::definition::{Build, Definition};
+use crate::document::{Document, NetworkKind, ObjectKind, Placing, RewardKind, RobotKind, Wrapper};
+use crate::part::definition::Build;
 
 /// Adds the defaults of keys to those of a part.
 fn complete_keys(
@@ -17,8 +14,7 @@ fn complete_keys(
     keys: &mut Map<String, Value>,
     (path, source): (&str, &Source),
 ) -> Result<(), Error> {
-    let of_kind = |definition: &&Definition| definition.name == kind && place(&definition.build).2 == what;
-    let definition = source.registry.definitions.iter().find(of_kind);
+    let definition = source.registry.definition(kind, what);
     let definition = definition.ok_or_else(|| source.wrong(path, format!("`{kind}` is no {what}")))?;
     *keys = (definition.complete)(keys).map_err(|why| source.wrong(path, why))?;
     Ok(())
@@ -50,16 +46,12 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
     for (index, sensor) in document.sensors.iter_mut().enumerate() {
         let path = format!("/sensors/{index}");
         wrapped(&mut sensor.wrappers, &path)?;
-        if let SensorKind::Registered { kind, keys } = &mut sensor.kind {
-            completed("sensor", kind, keys, &path)?;
-        }
+        completed("sensor", &sensor.kind.kind, &mut sensor.kind.keys, &path)?;
     }
     for (index, motor) in document.motors.iter_mut().enumerate() {
         let path = format!("/motors/{index}");
         wrapped(&mut motor.wrappers, &path)?;
-        if let MotorKind::Registered { kind, keys } = &mut motor.kind {
-            completed("motor", kind, keys, &path)?;
-        }
+        completed("motor", &motor.kind.kind, &mut motor.kind.keys, &path)?;
     }
     for (index, term) in document.reward.iter_mut().enumerate() {
         complete_term(&mut term.kind, &format!("/reward/{index}"), source)?;

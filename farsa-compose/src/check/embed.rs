@@ -7,8 +7,9 @@ use farsa_lab::Error;
 use farsa_lab::advanced::read_text_file;
 use farsa_models::ReadOptions;
 
+use crate::check::registry::Registry;
 use crate::check::source::Source;
-use crate::document::{Document, NetworkKind, SensorKind};
+use crate::document::{Document, NetworkKind};
 use crate::jointed::robot_model::model_options;
 
 /// Most bytes of a named file.
@@ -32,20 +33,18 @@ fn merged(target: &Path, root: &Path) -> Result<String, String> {
 }
 
 /// Lists the names of files in a document, with their paths.
-fn named(document: &Document) -> Vec<(String, &str)> {
+fn named(document: &Document, registry: &Registry) -> Vec<(String, String)> {
     let scene = document.world.scene.as_deref().map(|name| ("/world/scene".to_owned(), name));
     let model = document.robot.as_ref().and_then(|robot| robot.file.as_deref()).map(|name| (MODEL.to_owned(), name));
     let network = if let NetworkKind::Evonet(evonet) = &document.network.kind { evonet.file.as_deref() } else { None };
     let network = network.map(|name| ("/network/file".to_owned(), name));
-    let mut files: Vec<(String, &str)> = scene.into_iter().chain(model).chain(network).collect();
+    let files = scene.into_iter().chain(model).chain(network).map(|(path, name)| (path, name.to_owned()));
+    let mut files: Vec<(String, String)> = files.collect();
     let demonstrations = document.learning.iter().flat_map(|learning| learning.demonstrations.iter().enumerate());
-    files.extend(demonstrations.map(|(index, name)| (format!("/learning/demonstrations/{index}"), name.as_str())));
+    files.extend(demonstrations.map(|(index, name)| (format!("/learning/demonstrations/{index}"), name.clone())));
     for (index, sensor) in document.sensors.iter().enumerate() {
-        let SensorKind::Infrared { tables: Some(tables), .. } = &sensor.kind else { continue };
-        let path = format!("/sensors/{index}/tables");
-        files.push((format!("{path}/walls"), tables.walls.as_str()));
-        let bodies = tables.bodies.iter().enumerate();
-        files.extend(bodies.map(|(index, body)| (format!("{path}/bodies/{index}/file"), body.file.as_str())));
+        let of_part = registry.sensor(&sensor.kind).map_or_else(Vec::new, |sensor| sensor.files());
+        files.extend(of_part.into_iter().map(|(key, name)| (format!("/sensors/{index}/{key}"), name)));
     }
     files
 }
@@ -61,12 +60,12 @@ pub(crate) fn embedded(
     document: &Document,
     source: &Source,
 ) -> Result<Option<String>, Error> {
-    let named = named(document);
+    let named = named(document, &source.registry);
     if !document.files.is_empty() {
         for (path, name) in named {
-            if !document.files.contains_key(name) {
+            if !document.files.contains_key(&name) {
                 let names = document.files.keys().map(String::as_str);
-                return Err(Error::unknown(&source.of(&path), "file", name, names));
+                return Err(Error::unknown(&source.of(&path), "file", &name, names));
             }
         }
         return Ok(None);
@@ -78,7 +77,7 @@ pub(crate) fn embedded(
             Err(source.wrong(path, why))
         });
     };
-    let mut contents: Vec<(&str, String)> = Vec::new();
+    let mut contents: Vec<(String, String)> = Vec::new();
     for (path, name) in named {
         if contents.iter().any(|(known, _)| *known == name) {
             continue;
@@ -86,7 +85,7 @@ pub(crate) fn embedded(
         if contents.len() == MAX_FILES {
             return Err(source.wrong(&path, format!("is one file more than {MAX_FILES}, which are the most")));
         }
-        let relative = Path::new(name);
+        let relative = Path::new(&name);
         // No root and no parent folder. A backslash would separate folders on other systems.
         let within = relative.components().all(|part| matches!(part, Component::Normal(_)));
         if !within || name.is_empty() || name.contains('\\') {
@@ -113,7 +112,7 @@ pub(crate) fn embedded(
     let mut text = format!("{}\n\n[files]\n", text.trim_end());
     for (name, content) in contents {
         // Writing into a string cannot fail.
-        let _ = writeln!(text, "{} = {}", toml::Value::String(name.into()), toml::Value::String(content));
+        let _ = writeln!(text, "{} = {}", toml::Value::String(name), toml::Value::String(content));
     }
     Ok(Some(text))
 }

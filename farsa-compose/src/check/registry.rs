@@ -1,6 +1,6 @@
 //! Parts of the user's program, and the schema with their keys.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use farsa_body::robot::Robot;
 use farsa_body::robots::MobileRobot;
@@ -8,38 +8,23 @@ use farsa_lab::Error;
 use farsa_lab::advanced::Part;
 use serde_json::{Value, json};
 
-use crate::check::schema::{SCHEMA, scene_schema};
+use crate::check::schema::{SCHEMA, close, scene_schema};
+use crate::document::{MotorKind, SensorKind};
 use crate::name::is_name;
 use crate::part::definition::{Build, Definition};
-use crate::part::registration::built_in;
+use crate::part::motor::AnyMotor;
+use crate::part::sensor::AnySensor;
 
-/// Parts that a file may name in addition to those of the format.
-#[derive(Clone, Debug)]
+/// Registered parts.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Registry {
-    pub(crate) definitions: Vec<Definition>,
+    definitions: Arc<Vec<Definition>>,
     /// Schema of a file, and of a file with objects only.
     pub(crate) schemas: Arc<[Value; 2]>,
 }
 
-/// Registry without parts, whose schemas are built once because each takes a megabyte.
-static PLAIN: LazyLock<Registry> = LazyLock::new(|| {
-    // A test builds the same registry, so an error cannot occur later.
-    Registry::of(&SCHEMA, &built_in()).unwrap_or_else(|_| Registry { definitions: Vec::new(), schemas: Arc::default() })
-});
-
-impl Default for Registry {
-    fn default() -> Self {
-        PLAIN.clone()
-    }
-}
-
-/// Creates the JSON schema of the format. You can use it to check files in an editor, for example.
-pub fn schema() -> Value {
-    Registry::default().schemas[0].clone()
-}
-
 /// Name in the schema of the kinds of a definition, the key that selects one, and the name in messages.
-pub(crate) fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
+fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
     match build {
         Build::Sensor(..) => ("Sensor", "kind", "sensor"),
         Build::Motor(..) => ("Motor", "kind", "motor"),
@@ -53,25 +38,22 @@ pub(crate) fn place(build: &Build) -> (&'static str, &'static str, &'static str)
 }
 
 impl Registry {
-    /// Collects parts, of which those of other crates are ignored.
+    /// Creates a registry without parts.
+    pub(crate) fn empty() -> Self {
+        Self { definitions: Arc::default(), schemas: Arc::new([SCHEMA.clone(), Value::Null]) }
+    }
+
+    /// Adds parts, of which those of other crates are ignored.
     ///
     /// # Errors
     /// [`Error::Usage`] for a name that is invalid or taken, and for keys that a file cannot have.
-    pub(crate) fn new(parts: &[Part]) -> Result<Self, Error> {
-        let plain = Self::default();
-        if !parts.iter().any(|part| part.definition::<Definition>().is_some()) {
-            return Ok(plain);
-        }
-        let own = Self::of(&plain.schemas[0], parts)?;
-        let definitions = plain.definitions.into_iter().chain(own.definitions).collect();
-        Ok(Self { definitions, ..own })
-    }
-
-    /// Adds parts to a schema.
-    fn of(schema: &Value, parts: &[Part]) -> Result<Self, Error> {
+    pub(crate) fn with(&self, parts: &[Part]) -> Result<Self, Error> {
         let definitions = parts.iter().filter_map(Part::definition::<Definition>).cloned();
         let definitions: Vec<Definition> = definitions.collect();
-        let mut schema = schema.clone();
+        if definitions.is_empty() {
+            return Ok(self.clone());
+        }
+        let mut schema = self.schemas[0].clone();
         for definition in &definitions {
             let (kinds, tag, what) = place(&definition.build);
             let wrong = |why: &str| Error::Usage(format!("the {what} `{}` of this program {why}", definition.name));
@@ -85,13 +67,31 @@ impl Registry {
             }
         }
         let scene = scene_schema(&schema);
-        Ok(Self { definitions, schemas: Arc::new([schema, scene]) })
+        let definitions = self.definitions.iter().cloned().chain(definitions).collect();
+        Ok(Self { definitions: Arc::new(definitions), schemas: Arc::new([schema, scene]) })
+    }
+
+    /// Finds the definition of a kind of part.
+    pub(crate) fn definition(&self, name: &str, what: &str) -> Option<&Definition> {
+        self.definitions.iter().find(|definition| definition.name == name && place(&definition.build).2 == what)
     }
 
     /// Returns the first value that `build` gives for a definition of this name.
     pub(crate) fn find<'r, T>(&'r self, name: &str, build: impl Fn(&'r Build) -> Option<T>) -> Option<T> {
         let named = self.definitions.iter().filter(|definition| definition.name == name);
         named.map(|definition| &definition.build).find_map(build)
+    }
+
+    /// Reads the facts of a sensor.
+    pub(crate) fn sensor(&self, sensor: &SensorKind) -> Option<Box<dyn AnySensor>> {
+        let read = self.find(&sensor.kind, |build| if let Build::Sensor(_, read) = build { Some(*read) } else { None });
+        read?(&sensor.keys).ok()
+    }
+
+    /// Reads the facts of a motor.
+    pub(crate) fn motor(&self, motor: &MotorKind) -> Option<Box<dyn AnyMotor>> {
+        let read = self.find(&motor.kind, |build| if let Build::Motor(_, read) = build { Some(*read) } else { None });
+        read?(&motor.keys).ok()
     }
 
     /// Finds a robot on wheels.
@@ -120,8 +120,15 @@ fn add_word(schema: &mut Value, name: &str) -> Result<(), &'static str> {
 fn add_branch(schema: &mut Value, definition: &Definition, [kinds, tag]: [&str; 2]) -> Result<(), String> {
     let name = definition.name;
     let mut own = (definition.schema)().to_value();
+    close(&mut own);
     let shared = own.get_mut("$defs").map(Value::take).unwrap_or_default();
-    refer(&mut own, name);
+    // Equal types of several parts are one. Others get the name of the part.
+    let known = &schema["$defs"];
+    let types = shared.as_object().into_iter().flatten();
+    let other = types.filter(|(key, value)| known.get(key).is_some_and(|known| known != *value));
+    let other: Vec<String> = other.map(|(key, _)| key.clone()).collect();
+    let rename = |key: &str| if other.iter().any(|other| other == key) { format!("{name}.{key}") } else { key.into() };
+    refer(&mut own, &rename);
     let table = schema.pointer(&format!("/$defs/{kinds}")).ok_or("has no place in the schema")?;
     let common: Vec<String> =
         table["properties"].as_object().into_iter().flatten().map(|(key, _)| key.clone()).collect();
@@ -144,25 +151,25 @@ fn add_branch(schema: &mut Value, definition: &Definition, [kinds, tag]: [&str; 
     let Value::Object(shared) = shared else { return Ok(()) };
     let definitions = schema.get_mut("$defs").and_then(Value::as_object_mut).ok_or("has no place in the schema")?;
     for (key, mut value) in shared {
-        refer(&mut value, name);
-        definitions.insert(format!("{name}.{key}"), value);
+        refer(&mut value, &rename);
+        definitions.insert(rename(&key), value);
     }
     Ok(())
 }
 
 /// Renames references, so that types of two parts may have the same name.
-fn refer(value: &mut Value, name: &str) {
+fn refer(value: &mut Value, rename: &dyn Fn(&str) -> String) {
     match value {
         Value::Object(map) => {
             for (key, value) in map {
                 let target = value.as_str().and_then(|target| target.strip_prefix("#/$defs/"));
-                match target.map(|target| format!("#/$defs/{name}.{target}")).filter(|_| key == "$ref") {
+                match target.map(|target| format!("#/$defs/{}", rename(target))).filter(|_| key == "$ref") {
                     Some(target) => *value = target.into(),
-                    None => refer(value, name),
+                    None => refer(value, rename),
                 }
             }
         }
-        Value::Array(items) => items.iter_mut().for_each(|item| refer(item, name)),
+        Value::Array(items) => items.iter_mut().for_each(|item| refer(item, rename)),
         _ => {}
     }
 }

@@ -66,7 +66,7 @@ fn name_branches(map: &mut Map<String, Value>) {
 }
 
 /// Forbids unnamed keys in every table.
-fn close(schema: &mut Value) {
+pub(crate) fn close(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
             map.values_mut().for_each(close);

@@ -23,6 +23,8 @@ mod learning;
 mod motor;
 /// Networks.
 mod network;
+/// Registered parts with their keys.
+mod registered;
 /// Terms of the fitness, success and failure.
 mod reward;
 /// Robots.
@@ -31,8 +33,6 @@ mod robot;
 mod sensor;
 /// The world and its objects.
 mod world;
-/// Wrappers of sensors and motors.
-mod wrapper;
 
 pub use behaviour::{BehaviourOfTerms, DescriptorTerm, ObjectiveTerm};
 pub use blocks::{Blocks, Cluster, ClusterActivation, Link};
@@ -40,13 +40,13 @@ pub use episode::{Ending, Episode, Placing, Start};
 pub use evonet::{Evonet, EvonetNeurons};
 pub use foraging::Foraging;
 pub use learning::{Learning, LossName};
-pub use motor::{Led, Motor, MotorKind};
+pub use motor::Motor;
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
+pub use registered::{MotorKind, SensorKind, Wrapper};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
 pub use robot::{RegisteredRobot, Robot, RobotGroup, RobotKind, Team};
-pub use sensor::{AxesName, Camera, ColorRange, Eye, InfraredModel, MeasuredBody, MeasuredTables, Sensor, SensorKind};
+pub use sensor::Sensor;
 pub use world::{Collisions, Engine, Object, ObjectKind, World};
-pub use wrapper::Wrapper;
 
 /// An experiment: robots in a world, their sensors, motors and network, the course of a trial and its reward.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

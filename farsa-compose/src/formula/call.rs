@@ -224,7 +224,7 @@ fn units_of(description: &str) -> Vec<Unit> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::registry::schema;
+    use crate::schema;
 
     /// A term with an unreadable unit would have none in formulas.
     #[test]

@@ -3,6 +3,7 @@
 use farsa_lab::Error;
 use farsa_num::{Domain, Scalar, Stream, exp, ln, sin_cos, tanh};
 
+use crate::built_in::registry;
 use crate::check::source::Source;
 use crate::document::RewardKind;
 use crate::formula::channels::ChannelNames;
@@ -209,7 +210,8 @@ fn with_scope<T>(work: impl FnOnce(Scope<'_>) -> T) -> T {
     let motors = [("wheels".to_owned(), [0, 2])];
     let inputs = ["infrared 1", "infrared 2", "infrared 3", "mark"].map(str::to_owned);
     let outputs = ["wheels left", "wheels right"].map(str::to_owned);
-    let source = Source::new("drawn.toml");
+    let mut source = Source::new("drawn.toml");
+    source.registry = registry(&[]).unwrap();
     let channels = ChannelNames { sensors: &sensors, motors: &motors, inputs: &inputs, outputs: &outputs };
     work(Scope { path: "/reward/0/formula", channels, source: &source })
 }

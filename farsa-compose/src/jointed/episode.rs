@@ -11,15 +11,17 @@ use farsa_num::{Domain, Stream};
 use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
 use farsa_view::{Channel, Schema};
 
+use crate::check::source::Source;
 use crate::composed_task::Body;
-use crate::document::{Ending, MotorKind, SensorKind};
+use crate::document::Ending;
 use crate::jointed::SpatialWorld;
-use crate::jointed::channel_quantity;
+use crate::jointed::registered::PartOfSpatial;
 use crate::jointed::scene::Scene;
 use crate::jointed::setup::Setup;
+use crate::part::PartScene;
 use crate::parts::agents::Agents;
-use crate::parts::channel_quantity::ChannelQuantity;
 use crate::parts::noise_streams::NoiseStreams;
+use crate::sensors::eye::camera_of;
 
 /// A robot with its network in a trial.
 #[derive(Clone, Debug)]
@@ -96,7 +98,7 @@ fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
     }
     let mut schema = Schema { objects, ..Schema::from_robot(&robot) };
     for (sensor, (name, _)) in setup.equipment.sensors.iter().zip(sensors) {
-        if let Some(camera) = sensor.kind().camera() {
+        if let Some(camera) = camera_of(&*sensor.kind().0) {
             schema = schema.with_image(name, camera.size());
         }
     }
@@ -139,12 +141,9 @@ impl Body for JointedEpisode {
         Some(MjcfOptions { time_step, gravity: world.gravity, ..MjcfOptions::default() })
     }
 
-    fn sensed(&self, kind: &SensorKind, channel: usize, _: usize) -> ChannelQuantity {
-        channel_quantity::sensed(kind, channel, &self.setup.scene)
-    }
-
-    fn driven(&self, kind: &MotorKind, channel: usize, _: usize) -> ChannelQuantity {
-        channel_quantity::driven(kind, channel, &self.setup.scene)
+    fn in_scene(&self, _: usize, call: &mut dyn FnMut(&PartScene<'_>)) {
+        let source = Source::default();
+        call(&PartScene::new(&PartOfSpatial { scene: &self.setup.scene, wiring: None, path: "", source: &source }));
     }
 }
 
@@ -197,7 +196,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         let Agents { document, ledger, networks, x, y, .. } = &self.agents;
         recorder.sensors(x);
         for (number, camera) in
-            self.setup.equipment.sensors.iter().filter_map(|sensor| sensor.kind().camera()).enumerate()
+            self.setup.equipment.sensors.iter().filter_map(|sensor| camera_of(&*sensor.kind().0)).enumerate()
         {
             camera.record(number, recorder);
         }

@@ -1,24 +1,39 @@
 //! Registered parts.
 
+use std::cell::RefCell;
+
 use farsa_body::Pose;
 use farsa_body::ports::{ActuatorId, BodyId, Channels, JointId, Motor, PairId, Sensor};
-use farsa_body::robots::MobileRobot;
+use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
 
 use crate::check::completed::builder;
 use crate::check::source::Source;
+use crate::document::{MotorKind, SensorKind};
 use crate::jointed::SpatialWorld;
-use crate::jointed::named_point::NamedPoint;
 use crate::jointed::scene::Scene;
 use crate::part::PartScene;
 use crate::part::definition::{Build, Given};
+use crate::part::files::Files;
+use crate::part::named_point::NamedPoint;
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
-use crate::part::scene::{Area, Surroundings};
+use crate::part::scene::{Area, JointAbout, ON_WHEELS, Surroundings};
+use crate::part::wiring::Wiring;
+use crate::sensors::target_position::TargetSensor;
 
 /// A registered sensor.
 #[derive(Clone, Debug)]
 pub(crate) struct RegisteredSensor(pub(crate) Box<dyn SpatialSensor>);
+
+impl RegisteredSensor {
+    /// Updates the position of a marker from those of all markers [m].
+    pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
+        if let Some(sensor) = (*self.0).as_any_mut().downcast_mut::<TargetSensor>() {
+            sensor.look(markers);
+        }
+    }
+}
 
 impl Channels for RegisteredSensor {
     fn channels(&self) -> usize {
@@ -60,6 +75,8 @@ impl<W: SpatialWorld> Motor<W> for RegisteredMotor {
 #[derive(Clone, Copy)]
 pub(crate) struct PartOfSpatial<'s> {
     pub(crate) scene: &'s Scene,
+    /// Actuators of motors, while motors are built.
+    pub(crate) wiring: Option<&'s RefCell<Wiring>>,
     /// Path of the part in the document.
     pub(crate) path: &'s str,
     pub(crate) source: &'s Source,
@@ -67,7 +84,7 @@ pub(crate) struct PartOfSpatial<'s> {
 
 impl PartOfSpatial<'_> {
     /// Error for a body of a file that is not at the origin of its segment. A part would measure another place.
-    fn frame(&self, name: Option<&str>, body: BodyId) -> Error {
+    fn off_origin(&self, name: Option<&str>, body: BodyId) -> Error {
         let (name, body) = (name.unwrap_or_default(), self.scene.body_name(body));
         self.error(format!(
             "`{name}` is not at the origin of its segment `{body}`, where a registered part would measure"
@@ -83,13 +100,13 @@ impl Surroundings for PartOfSpatial<'_> {
     fn body(&self, name: Option<&str>) -> Result<BodyId, Error> {
         let name = name.map(str::to_owned);
         let (body, placement) = self.scene.body(name.as_ref(), self.path, self.source)?;
-        if placement == Pose::identity() { Ok(body) } else { Err(self.frame(name.as_deref(), body)) }
+        if placement == Pose::identity() { Ok(body) } else { Err(self.off_origin(name.as_deref(), body)) }
     }
 
     fn thing(&self, name: &str) -> Result<BodyId, Error> {
         match self.scene.point_named(&name.to_owned(), self.path, self.source)?.0 {
             NamedPoint::Body(point) if point == Point::origin(point.body) => Ok(point.body),
-            NamedPoint::Body(point) => Err(self.frame(Some(name), point.body)),
+            NamedPoint::Body(point) => Err(self.off_origin(Some(name), point.body)),
             NamedPoint::Marker(_) => Err(self.error(format!("`{name}` is a marker, which has no body"))),
         }
     }
@@ -107,10 +124,8 @@ impl Surroundings for PartOfSpatial<'_> {
     }
 
     fn actuators(&self, joints: &[String]) -> Result<Vec<ActuatorId>, Error> {
-        let actuator = |joint: &JointId| {
-            let number = self.scene.robot.actuators.iter().position(|actuator| actuator.joint == *joint);
-            number.map(|number| ActuatorId(number as u16))
-        };
+        let wiring = self.wiring();
+        let actuator = |joint: &JointId| wiring.first(*joint);
         let named = self.joints(joints)?;
         if joints.is_empty() {
             return Ok(named.iter().filter_map(actuator).collect());
@@ -126,15 +141,101 @@ impl Surroundings for PartOfSpatial<'_> {
     fn mobile_robot(&self) -> Option<&MobileRobot> {
         None
     }
+
+    fn parts(&self) -> Option<MobileParts> {
+        None
+    }
+
+    fn error_at(&self, key: &str, why: String) -> Error {
+        self.source.wrong(&format!("{}/{key}", self.path), why)
+    }
+
+    fn path(&self) -> &str {
+        self.path
+    }
+
+    fn line(&self) -> String {
+        self.source.of(self.path)
+    }
+
+    fn files(&self) -> Option<&Files<'_>> {
+        None
+    }
+
+    fn has_food(&self) -> bool {
+        false
+    }
+
+    fn shows(&self) -> bool {
+        self.scene.shows
+    }
+
+    fn frame(&self, body: Option<&String>, key: &str) -> Result<(BodyId, Pose<f64>), Error> {
+        self.scene.body(body, &format!("{}/{key}", self.path), self.source)
+    }
+
+    fn point(&self, body: Option<&String>, point: [f64; 3]) -> Result<Point, Error> {
+        self.scene.point(body, point, self.path, self.source)
+    }
+
+    fn target(&self, name: &str, key: &str) -> Result<NamedPoint, Error> {
+        Ok(self.scene.point_named(&name.to_owned(), &format!("{}/{key}", self.path), self.source)?.0)
+    }
+
+    fn touching(&self, bodies: &[String], with: Option<&String>) -> Result<Vec<PairId>, Error> {
+        self.scene.pairs(bodies, with, self.path, self.source)
+    }
+
+    fn called(&self, body: Option<&String>) -> String {
+        body.cloned().unwrap_or_else(|| self.scene.body_name(BodyId(0)).to_owned())
+    }
+
+    fn body_name(&self, body: BodyId) -> &str {
+        self.scene.body_name(body)
+    }
+
+    fn joint_name(&self, joint: JointId) -> &str {
+        self.scene.joint_name(joint)
+    }
+
+    fn range(&self, joint: JointId) -> [f64; 2] {
+        self.scene.range(joint)
+    }
+
+    fn joint(&self, names: &[String], channel: usize, fits: &dyn Fn(JointId) -> bool) -> JointAbout {
+        let scene = self.scene;
+        let mut joints = scene.robot.joints().filter(|joint| joint.index() < scene.own_bodies());
+        let joint = match names.get(channel) {
+            Some(name) => joints.find(|joint| scene.joint_name(*joint) == name),
+            None => joints.filter(|joint| fits(*joint)).nth(channel),
+        };
+        let slides = joint.is_some_and(|joint| scene.is_rail(joint));
+        JointAbout {
+            name: joint.map_or_else(String::new, |joint| scene.joint_name(joint).to_owned()),
+            range: joint.map_or([0.0, 1.0], |joint| scene.range(joint)),
+            units: if slides { ["m", "m/s", "N"] } else { ["rad", "rad/s", "N m"] },
+            torque: joint.and_then(|joint| self.wiring().limit(joint)),
+        }
+    }
+
+    fn fitting(&self, names: &[String], fits: &dyn Fn(JointId) -> bool) -> Result<Vec<JointId>, Error> {
+        self.scene.joints(names, fits, self.path, self.source)
+    }
+
+    fn wiring(&self) -> Wiring {
+        self.wiring.map_or_else(|| Wiring::new(&self.scene.robot), |wiring| wiring.borrow().clone())
+    }
+
+    fn open_wiring(&self) -> Option<&RefCell<Wiring>> {
+        self.wiring
+    }
 }
 
-/// Reason against a part of the other robots.
-const OTHER: &str = "is for robots on wheels; this one has joints";
-
 /// Builds a registered sensor in a scene.
-pub(crate) fn sensor(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result<RegisteredSensor, Error> {
+pub(crate) fn sensor(given: &SensorKind, scene: PartOfSpatial<'_>) -> Result<RegisteredSensor, Error> {
+    let SensorKind { kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), ON_WHEELS, |build| match build {
         Build::Sensor((_, build), _) => Some(*build),
         _ => None,
     });
@@ -143,9 +244,10 @@ pub(crate) fn sensor(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Resu
 }
 
 /// Builds a registered motor in a scene.
-pub(crate) fn motor(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result<RegisteredMotor, Error> {
+pub(crate) fn motor(given: &MotorKind, scene: PartOfSpatial<'_>) -> Result<RegisteredMotor, Error> {
+    let MotorKind { kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), ON_WHEELS, |build| match build {
         Build::Motor((_, build), _) => Some(*build),
         _ => None,
     });
@@ -156,7 +258,7 @@ pub(crate) fn motor(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Resul
 /// Builds a registered term in a scene.
 pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialTerm>, Error> {
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), ON_WHEELS, |build| match build {
         Build::Term((_, build)) => Some(*build),
         _ => None,
     });
@@ -167,7 +269,7 @@ pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result
 /// Builds a registered placement in a scene.
 pub(crate) fn start(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialStart>, Error> {
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), OTHER, |build| match build {
+    let build = builder((kind, path, source), ON_WHEELS, |build| match build {
         Build::Start((_, build)) => Some(*build),
         _ => None,
     });

@@ -1,7 +1,7 @@
 //! Robot with the floor and the objects, and the parts that names refer to.
 
 use farsa_body::Pose;
-use farsa_body::ports::{ActuatorId, BodyId, JointId, PairId};
+use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::robot::{Collider, Robot, Shape, Surface};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
@@ -9,10 +9,10 @@ use farsa_num::Scalar;
 use farsa_view::shape::{Geometry, Role, SceneObject};
 
 use crate::check::source::Source;
-use crate::document::Document;
-use crate::jointed::named_point::NamedPoint;
+use crate::document::{Document, Engine};
 use crate::jointed::robot_model::RobotModel;
 use crate::jointed::things::{Marker, Thing, What};
+use crate::part::named_point::NamedPoint;
 
 /// Scene of a document.
 #[derive(Clone, Debug)]
@@ -28,10 +28,8 @@ pub(crate) struct Scene {
     pub(crate) drawn: Vec<SceneObject>,
     /// Collider of the floor.
     floor: Option<usize>,
-    /// Actuators with a motor.
-    pub(crate) driven: Vec<ActuatorId>,
-    /// Actuators that motors added, with the place of the motor in the file.
-    pub(crate) added: Vec<(ActuatorId, String)>,
+    /// True for an engine in which cameras with sectors see.
+    pub(crate) shows: bool,
 }
 
 /// Names of the robot and of the floor.
@@ -42,6 +40,7 @@ impl Scene {
     /// Builds the robot of a document with its surroundings.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
         let RobotModel { mut robot, frames, touches } = RobotModel::new(document, source)?;
+        let shows = document.world.engine != Engine::Rapier;
         let own = [robot.segments.len(), robot.colliders.len()];
         let (mut things, mut markers, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
         let floor = document.world.floor.then(|| {
@@ -62,8 +61,7 @@ impl Scene {
             }
             things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
-        let mut scene =
-            Self { robot, own, frames, things, markers, drawn, floor, driven: Vec::new(), added: Vec::new() };
+        let mut scene = Self { robot, own, frames, things, markers, drawn, floor, shows };
         scene.pair(document, touches);
         Ok(scene)
     }

@@ -1,19 +1,20 @@
 //! Scene with the sensors, motors and terms of its robot.
 
+use std::cell::RefCell;
+
 use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::robot::JointKind;
 use farsa_lab::Error;
 use farsa_physics::articulated::Options;
 
 use crate::check::source::Source;
-use crate::document::{Document, Ending, Engine, SensorKind};
+use crate::document::{Document, Ending, Engine};
 use crate::formula::compile::Quantity;
-use crate::jointed::actuation;
-use crate::jointed::driving::{Driving, motor};
+use crate::jointed::registered::{self, PartOfSpatial, RegisteredMotor, RegisteredSensor};
 use crate::jointed::scene::{ROBOT, Scene};
-use crate::jointed::sensing::{Sensing, sensor};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
+use crate::part::wiring::Wiring;
 use crate::parts::agents::Agents;
 use crate::parts::conditions::FormulaConditions;
 use crate::parts::equipment::Equipment;
@@ -28,7 +29,7 @@ use crate::parts::trainee::Trainee;
 #[derive(Clone, Debug)]
 pub(crate) struct Setup {
     pub(crate) scene: Scene,
-    pub(crate) equipment: Equipment<Sensing, Driving>,
+    pub(crate) equipment: Equipment<RegisteredSensor, RegisteredMotor>,
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
@@ -46,12 +47,19 @@ impl Setup {
         let mut scene = Scene::new(&document, source)?;
         let mut budget = MemoryBudget::new(source.limits);
         let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
-        let make = |kind, path: &str| sensor(kind, &scene, path, source);
+        let wiring = RefCell::new(Wiring::new(&scene.robot));
+        let make = |kind, path: &str| {
+            registered::sensor(kind, PartOfSpatial { scene: &scene, wiring: Some(&wiring), path, source })
+        };
         let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
-        // Motors come after sensors, because they may add actuators to the scene.
         let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
-        let make = |kind, path: &str| motor(kind, &mut scene, path, source);
+        let make = |kind, path: &str| {
+            registered::motor(kind, PartOfSpatial { scene: &scene, wiring: Some(&wiring), path, source })
+        };
         let motors = Part::list("motors", motors, make, &mut budget, source)?;
+        let wiring = wiring.into_inner();
+        let warnings = wiring.warnings(&scene.robot);
+        scene.robot.actuators = wiring.actuators;
         let equipment = Equipment { sensors, motors };
         let spec = NetworkSpec::new(&document, equipment.channels(), source)?;
         budget.take(spec.values(), "/network", source)?;
@@ -65,7 +73,7 @@ impl Setup {
         let conditions = FormulaConditions::new(&document, channels, &mut terms, &mut make, source)?;
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
         let mut ledger = Ledger::new(&document, &of_steps, (conditions, &[]), &groups, source)?;
-        ledger.warnings.extend(actuation::warnings(&scene));
+        ledger.warnings.extend(warnings);
         let starting = Starting::new(&document, &scene, source)?;
         let segments = scene.robot.segments.iter().enumerate();
         let floating = segments.filter(|(_, segment)| segment.joint.kind == JointKind::Floating);
@@ -96,13 +104,7 @@ fn refuse(document: &Document, source: &Source) -> Result<(), Error> {
         let why = "`arena` is for robots on wheels; this one has joints, for `articulated` and `rapier`";
         return Err(source.wrong("/world/engine", why));
     }
-    check_parts(document, 1, 0, source)?;
-    for (index, sensor) in document.sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-        if document.world.engine == Engine::Rapier && matches!(sensor.kind, SensorKind::Camera(_)) {
-            let why = "sees nothing in `rapier`; take the engine `articulated`";
-            return Err(source.wrong(&format!("/sensors/{index}"), why));
-        }
-    }
+    check_parts(document, &[None], source)?;
     if !document.robots.is_empty() || document.team.coevolution {
         return Err(source.wrong("/robots", "are for robots on wheels; of those with joints there is one"));
     }

@@ -2,13 +2,12 @@
 
 use farsa_body::Pose;
 use farsa_body::ports::{
-    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Sensor as _, Vision,
+    Actuated, ActuatorId, Arrange, BodyId, Contacts, Handles, JointId, Joints, Kinematics, Vision,
 };
 use farsa_num::Stream;
 use farsa_physics::articulated::{Lane, World};
 
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
-use crate::parts::eye::Eye;
 
 /// A world of bodies with joints, in space.
 pub(crate) trait SpatialWorld:
@@ -20,8 +19,6 @@ pub(crate) trait SpatialWorld:
     + Vision
     + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>
 {
-    /// Draws the view of a camera.
-    fn show(&self, eye: &mut Eye, out: &mut [f32]);
     /// Reads a registered sensor.
     fn sense(&self, sensor: &mut dyn SpatialSensor, out: &mut [f32]);
     /// Drives a registered motor.
@@ -61,24 +58,14 @@ macro_rules! registered_parts {
 }
 
 impl SpatialWorld for World<f32> {
-    fn show(&self, eye: &mut Eye, out: &mut [f32]) {
-        eye.read(self, out);
-    }
     registered_parts!();
 }
 
 impl SpatialWorld for Lane<'_> {
-    fn show(&self, eye: &mut Eye, out: &mut [f32]) {
-        eye.read(self, out);
-    }
     registered_parts!();
 }
 
 #[cfg(feature = "rapier")]
 impl SpatialWorld for farsa_physics::rapier::World {
-    /// Draws nothing, because files with a camera are rejected for this engine.
-    fn show(&self, _: &mut Eye, out: &mut [f32]) {
-        out.fill(0.0);
-    }
     registered_parts!();
 }

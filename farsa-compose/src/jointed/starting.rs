@@ -201,7 +201,7 @@ fn how(
         Placing::Turned { .. } => Err(source.wrong(&format!("{path}/at"), "is for joints; this is none")),
         _ if joint => Err(source.wrong(&format!("{path}/at"), "is for things; a joint is `turned`")),
         Placing::Registered { at, keys } => {
-            Ok(How::Registered(registered::start(at, keys, PartOfSpatial { scene, path, source })?))
+            Ok(How::Registered(registered::start(at, keys, PartOfSpatial { scene, wiring: None, path, source })?))
         }
         Placing::InBox { low, high, apart } => {
             if (0..3).any(|k| low[k] > high[k]) {

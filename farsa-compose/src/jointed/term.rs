@@ -10,11 +10,11 @@ use crate::document::RewardKind;
 use crate::formula::channels::{ChannelNames, Channels};
 use crate::formula::compile::{Formula, Quantity, Scope};
 use crate::jointed::SpatialWorld;
-use crate::jointed::named_point::NamedPoint;
 use crate::jointed::registered::{self, PartOfSpatial};
 use crate::jointed::scene::Scene;
-use crate::jointed::sensing::ON_WHEELS;
+use crate::part::named_point::NamedPoint;
 use crate::part::object::SpatialTerm;
+use crate::part::scene::ON_WHEELS;
 use crate::parts::agents::Agents;
 
 /// Measure of a term.
@@ -297,7 +297,7 @@ fn measure(
         RewardKind::Step {} => Measure::Step,
         RewardKind::Time {} => Measure::Time,
         RewardKind::Registered { kind, keys } => {
-            Measure::Registered(registered::term(kind, keys, PartOfSpatial { scene, path, source })?)
+            Measure::Registered(registered::term(kind, keys, PartOfSpatial { scene, wiring: None, path, source })?)
         }
         _ => return Err(source.wrong(path, ON_WHEELS)),
     })

@@ -10,20 +10,19 @@ use serde_json::{Map, Value};
 
 use crate::document::Object;
 use crate::part::keys::Keys;
+use crate::part::motor::AnyMotor;
 use crate::part::network::Built;
 use crate::part::object::{
     PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
 };
 use crate::part::scene::PartScene;
-use crate::part::sensor::Quantity;
+use crate::part::sensor::AnySensor;
 use crate::part::wrapper::AnyWrapper;
 
 /// Keys of a part, as the file has them.
 pub(crate) type Given = Map<String, Value>;
-/// Returns the quantity of a channel.
-type OfChannel = fn(&Given, usize) -> Quantity;
-/// Reads a wrapper from its keys.
-type Wrapping = fn(&Given) -> Result<Box<dyn AnyWrapper>, Error>;
+/// Reads a part from its keys.
+type Reading<T> = fn(&Given) -> Result<Box<T>, Error>;
 /// Builds a part from its keys and further arguments.
 type Wiring = fn(&Given, [usize; 2], f64) -> Result<Built, Error>;
 type Composing = fn(&Given, &Object) -> Result<Vec<Object>, Error>;
@@ -47,11 +46,11 @@ type InWorlds<P, S> = (Option<Building<Box<P>>>, Option<Building<Box<S>>>);
 /// Functions that build a part, by its kind.
 #[derive(Clone, Debug)]
 pub(crate) enum Build {
-    Sensor(InWorlds<dyn PlanarSensor, dyn SpatialSensor>, OfChannel),
-    Motor(InWorlds<dyn PlanarMotor, dyn SpatialMotor>, OfChannel),
+    Sensor(InWorlds<dyn PlanarSensor, dyn SpatialSensor>, Reading<dyn AnySensor>),
+    Motor(InWorlds<dyn PlanarMotor, dyn SpatialMotor>, Reading<dyn AnyMotor>),
     Term(InWorlds<dyn PlanarTerm, dyn SpatialTerm>),
     Start(InWorlds<dyn PlanarStart, dyn SpatialStart>),
-    Wrapper(Wrapping),
+    Wrapper(Reading<dyn AnyWrapper>),
     Network(Wiring),
     Thing(Composing),
     Wheels(Box<MobileRobot>),

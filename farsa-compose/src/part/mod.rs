@@ -47,12 +47,14 @@
 
 /// Definitions of parts by name and kind.
 pub(crate) mod definition;
-/// Exchanges of two areas.
-mod exchanges;
+/// Files of a document.
+pub(crate) mod files;
 /// Settings of a part.
 mod keys;
 /// Motors.
 pub(crate) mod motor;
+/// A point of a body, or a marker.
+pub(crate) mod named_point;
 /// Networks.
 pub(crate) mod network;
 /// Parts of unknown types, in all worlds.
@@ -69,6 +71,8 @@ pub(crate) mod start;
 pub(crate) mod term;
 /// Things.
 pub(crate) mod thing;
+/// Actuators of motors.
+pub(crate) mod wiring;
 /// Wrappers.
 pub(crate) mod wrapper;
 

@@ -1,5 +1,6 @@
 //! Parts of unknown types, in all worlds.
 
+use std::any::Any;
 use std::fmt;
 
 use farsa_body::ports::{Motor, Sensor};
@@ -47,6 +48,12 @@ macro_rules! object {
             /// Clones the part.
             #[doc(hidden)]
             fn boxed(&self) -> Box<dyn $name>;
+            /// Gets the part with its type.
+            #[doc(hidden)]
+            fn as_any(&self) -> &dyn Any;
+            /// Gets the part with its type.
+            #[doc(hidden)]
+            fn as_any_mut(&mut self) -> &mut dyn Any;
         }
 
         impl<T> $name for T
@@ -55,6 +62,14 @@ macro_rules! object {
         {
             fn boxed(&self) -> Box<dyn $name> {
                 Box::new(self.clone())
+            }
+
+            fn as_any(&self) -> &dyn Any {
+                self
+            }
+
+            fn as_any_mut(&mut self) -> &mut dyn Any {
+                self
             }
         }
 

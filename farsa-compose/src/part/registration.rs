@@ -7,19 +7,17 @@ use farsa_lab::advanced::Part;
 
 use crate::document::Object;
 use crate::part::definition::{Build, Definition, Given, keys};
-use crate::part::exchanges::Exchanges;
-use crate::part::motor::MotorPart;
+use crate::part::motor::{AnyMotor, MotorPart};
 use crate::part::network::{Built, NetworkPart, built};
 use crate::part::object::{
     PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
 };
 use crate::part::scene::PartScene;
-use crate::part::sensor::{Quantity, SensorPart};
+use crate::part::sensor::{AnySensor, SensorPart};
 use crate::part::start::StartPart;
 use crate::part::term::TermPart;
 use crate::part::thing::ThingPart;
 use crate::part::wrapper::{AnyWrapper, WrapperPart};
-use crate::wrappers::wrappers;
 
 /// Builds parts of a kind in a world from their keys.
 macro_rules! building {
@@ -38,12 +36,12 @@ building!(spatial_term_of, TermPart, Term, term, SpatialTerm);
 building!(planar_start_of, StartPart, Start, start, PlanarStart);
 building!(spatial_start_of, StartPart, Start, start, SpatialStart);
 
-fn sensor_quantity<P: SensorPart>(given: &Given, channel: usize) -> Quantity {
-    keys::<P>(given).map_or_else(|_| Quantity::default(), |part| part.quantity(channel))
+fn any_sensor<P: SensorPart>(given: &Given) -> Result<Box<dyn AnySensor>, Error> {
+    Ok(Box::new(keys::<P>(given)?))
 }
 
-fn motor_quantity<P: MotorPart>(given: &Given, channel: usize) -> Quantity {
-    keys::<P>(given).map_or_else(|_| Quantity::default(), |part| part.quantity(channel))
+fn any_motor<P: MotorPart>(given: &Given) -> Result<Box<dyn AnyMotor>, Error> {
+    Ok(Box::new(keys::<P>(given)?))
 }
 
 /// Registers a kind of sensor for all robots under a name.
@@ -53,18 +51,18 @@ where
 {
     Definition::part::<P>(
         name,
-        Build::Sensor((Some(planar_sensor_of::<P>), Some(spatial_sensor_of::<P>)), sensor_quantity::<P>),
+        Build::Sensor((Some(planar_sensor_of::<P>), Some(spatial_sensor_of::<P>)), any_sensor::<P>),
     )
 }
 
 /// Registers a kind of sensor for robots on wheels under a name.
 pub fn planar_sensor<P: SensorPart<Sensor: PlanarSensor>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Sensor((Some(planar_sensor_of::<P>), None), sensor_quantity::<P>))
+    Definition::part::<P>(name, Build::Sensor((Some(planar_sensor_of::<P>), None), any_sensor::<P>))
 }
 
 /// Registers a kind of sensor for robots with joints under a name.
 pub fn spatial_sensor<P: SensorPart<Sensor: SpatialSensor>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Sensor((None, Some(spatial_sensor_of::<P>)), sensor_quantity::<P>))
+    Definition::part::<P>(name, Build::Sensor((None, Some(spatial_sensor_of::<P>)), any_sensor::<P>))
 }
 
 /// Registers a kind of motor for all robots under a name.
@@ -72,20 +70,17 @@ pub fn motor<P>(name: &'static str) -> Part
 where
     P: MotorPart<Motor: PlanarMotor + SpatialMotor>,
 {
-    Definition::part::<P>(
-        name,
-        Build::Motor((Some(planar_motor_of::<P>), Some(spatial_motor_of::<P>)), motor_quantity::<P>),
-    )
+    Definition::part::<P>(name, Build::Motor((Some(planar_motor_of::<P>), Some(spatial_motor_of::<P>)), any_motor::<P>))
 }
 
 /// Registers a kind of motor for robots on wheels under a name.
 pub fn planar_motor<P: MotorPart<Motor: PlanarMotor>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Motor((Some(planar_motor_of::<P>), None), motor_quantity::<P>))
+    Definition::part::<P>(name, Build::Motor((Some(planar_motor_of::<P>), None), any_motor::<P>))
 }
 
 /// Registers a kind of motor for robots with joints under a name.
 pub fn spatial_motor<P: MotorPart<Motor: SpatialMotor>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Motor((None, Some(spatial_motor_of::<P>)), motor_quantity::<P>))
+    Definition::part::<P>(name, Build::Motor((None, Some(spatial_motor_of::<P>)), any_motor::<P>))
 }
 
 /// Registers a kind of term for all robots under a name.
@@ -156,11 +151,4 @@ pub fn robot_on_wheels(name: &'static str, robot: MobileRobot) -> Part {
 /// Registers a robot with joints under a name, for the key `kind` of `robot`.
 pub fn robot_with_joints(name: &'static str, robot: Robot) -> Part {
     Definition::robot(name, Build::Joints(Box::new(robot)))
-}
-
-/// Lists the parts of the format that are registered like those of other crates.
-pub(crate) fn built_in() -> Vec<Part> {
-    let mut parts = wrappers();
-    parts.push(planar_term::<Exchanges>("exchanges"));
-    parts
 }

@@ -1,13 +1,23 @@
 //! Scene in which a part is built.
 
+use std::cell::RefCell;
 use std::fmt::Display;
 
 use farsa_body::Pose;
+use farsa_body::actuators::Law;
 use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, Kinematics, PairId};
-use farsa_body::robots::MobileRobot;
+use farsa_body::robots::{MobileParts, MobileRobot};
+use farsa_body::sensors::Point;
 use farsa_lab::Error;
+use farsa_num::Scalar;
 
-use crate::arena::gathering::distance;
+use crate::part::files::Files;
+use crate::part::named_point::NamedPoint;
+use crate::part::wiring::Wiring;
+
+/// Reasons against a part of the other robots.
+pub(crate) const ON_WHEELS: &str = "is for robots on wheels; this one has joints";
+pub(crate) const WITH_JOINTS: &str = "is for robots with joints; this one is on wheels";
 
 /// Scene of a part in a world of either kind.
 pub(crate) trait Surroundings {
@@ -29,6 +39,67 @@ pub(crate) trait Surroundings {
     fn contacts(&self, bodies: &[String], with: Option<&str>) -> Result<Vec<PairId>, Error>;
     /// Gets the robot on wheels, if any.
     fn mobile_robot(&self) -> Option<&MobileRobot>;
+    /// Gets the parts of the robot on wheels, if any.
+    fn parts(&self) -> Option<MobileParts>;
+    /// Creates an error with the place of a key of the part.
+    fn error_at(&self, key: &str, why: String) -> Error;
+    /// Gets the path of the part in the document.
+    fn path(&self) -> &str;
+    /// Formats the place of the part in the file.
+    fn line(&self) -> String;
+    /// Gets the files of the document, while sensors are built.
+    fn files(&self) -> Option<&Files<'_>>;
+    /// Returns true with the section `foraging`.
+    fn has_food(&self) -> bool;
+    /// Returns true for an engine in which cameras with sectors see.
+    fn shows(&self) -> bool;
+    /// Returns a body of the robot, or a frame of its file with the pose in that body. `key` names it.
+    fn frame(&self, body: Option<&String>, key: &str) -> Result<(BodyId, Pose<f64>), Error>;
+    /// Returns a point of a body of the robot.
+    fn point(&self, body: Option<&String>, point: [f64; 3]) -> Result<Point, Error>;
+    /// Returns a thing or a body of the robot with joints. `key` names it.
+    fn target(&self, name: &str, key: &str) -> Result<NamedPoint, Error>;
+    /// Returns the contact pairs of bodies of the robot with a thing, the floor or everything.
+    fn touching(&self, bodies: &[String], with: Option<&String>) -> Result<Vec<PairId>, Error>;
+    /// Returns the name of a body for descriptions.
+    fn called(&self, body: Option<&String>) -> String;
+    /// Returns the name of a body.
+    fn body_name(&self, body: BodyId) -> &str;
+    /// Returns the name of a joint.
+    fn joint_name(&self, joint: JointId) -> &str;
+    /// Gets the range of a joint [rad or m].
+    fn range(&self, joint: JointId) -> [f64; 2];
+    /// Describes the joint of a channel, from those named or from all that fit.
+    fn joint(&self, names: &[String], channel: usize, fits: &dyn Fn(JointId) -> bool) -> JointAbout;
+    /// Returns named joints, or without names all that fit.
+    fn fitting(&self, names: &[String], fits: &dyn Fn(JointId) -> bool) -> Result<Vec<JointId>, Error>;
+    /// Returns the actuators of now.
+    fn wiring(&self) -> Wiring;
+    /// Gets the actuators, while motors are built.
+    fn open_wiring(&self) -> Option<&RefCell<Wiring>>;
+}
+
+/// Name of a joint, its range [rad or m], the units of its position, speed and effort, and its own largest torque.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JointAbout {
+    pub(crate) name: String,
+    pub(crate) range: [f64; 2],
+    pub(crate) units: [&'static str; 3],
+    pub(crate) torque: Option<f64>,
+}
+
+/// Scene of a robot on wheels.
+pub(crate) struct OnWheels<'s> {
+    scene: PartScene<'s>,
+    pub(crate) robot: &'s MobileRobot,
+    pub(crate) parts: MobileParts,
+}
+
+impl OnWheels<'_> {
+    /// Creates the error of a part that the robot lacks.
+    pub(crate) fn lacks(&self, what: &str) -> Error {
+        self.scene.error(format!("needs {what}; the {} has none", self.robot.name))
+    }
 }
 
 /// A disc or rectangle of the ground.
@@ -47,7 +118,8 @@ impl Area {
     pub fn contains<W: Kinematics + Handles<Body = BodyId>>(&self, world: &W, pose: Pose) -> bool {
         let area = world.pose(self.body);
         if self.disc {
-            return distance(&pose, &area) <= self.half[0] as f32;
+            let [x, y] = [0, 1].map(|k| pose.position[k] - area.position[k]);
+            return Scalar::sqrt(x * x + y * y) <= self.half[0] as f32;
         }
         // In the axes of the rectangle, where its sides are parallel to x and y.
         let [u, v] = [0, 1].map(|k| f64::from(pose.position[k] - area.position[k]));
@@ -60,11 +132,31 @@ impl Area {
 ///
 /// Each method returns an error with the place in the file and the nearest valid name.
 #[derive(Clone, Copy)]
-pub struct PartScene<'s>(&'s dyn Surroundings);
+pub struct PartScene<'s>(pub(crate) &'s dyn Surroundings);
 
 impl<'s> PartScene<'s> {
     pub(crate) fn new(surroundings: &'s dyn Surroundings) -> Self {
         Self(surroundings)
+    }
+
+    /// Gets the scene of a robot on wheels.
+    pub(crate) fn planar(&self) -> Result<OnWheels<'s>, Error> {
+        let found = self.0.mobile_robot().zip(self.0.parts());
+        let (robot, parts) = found.ok_or_else(|| self.error(ON_WHEELS))?;
+        Ok(OnWheels { scene: *self, robot, parts })
+    }
+
+    /// Describes the joint of a channel of a motor, from those named or from all with an actuator of this kind. A
+    /// motor with a `given` law is on all joints.
+    pub(crate) fn driven_joint(
+        &self,
+        names: &[String],
+        channel: usize,
+        given: bool,
+        kind: fn(&Law<f64>) -> bool,
+    ) -> JointAbout {
+        let wiring = self.0.wiring();
+        self.0.joint(names, channel, &|joint| given || wiring.has(joint, kind))
     }
 
     /// Creates an error that names the part in the file.

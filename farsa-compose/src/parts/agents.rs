@@ -25,7 +25,7 @@ pub(crate) struct Agents {
     pub(crate) spec: NetworkSpec,
     pub(crate) ledger: Ledger,
     pub(crate) groups: Groups,
-    pub(crate) registry: Arc<Registry>,
+    pub(crate) registry: Registry,
     /// Test protocols.
     pub(crate) interventions: Arc<Interventions>,
     /// Individuals of each population, if there are several.
@@ -64,7 +64,7 @@ impl Agents {
             spec,
             ledger,
             groups,
-            registry: Arc::new(registry.clone()),
+            registry: registry.clone(),
             interventions,
             size,
             evolving,

@@ -1,5 +1,6 @@
 //! Warning about a fitness that is the same for all individuals.
 
+use crate::check::registry::Registry;
 use crate::check::source::Source;
 use crate::document::{Document, MotorKind, ObjectKind, RewardKind, SensorKind};
 use crate::formula::compile::is_constant as is_constant_formula;
@@ -42,17 +43,17 @@ fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Sou
         | RewardKind::Dispersion {}
         | RewardKind::Clusters {}
         | RewardKind::LargestCluster {} => alone,
-        RewardKind::Held {} => !pulls(document),
+        RewardKind::Held {} => !pulls(document, &source.registry),
         RewardKind::Food {} | RewardKind::CarriedFood {} => foraging.is_some_and(|foraging| foraging.cells == 0),
         RewardKind::LostFood {} => foraging.is_some_and(|foraging| foraging.cells == 0 || foraging.cost == 0.0),
         RewardKind::Deaths {} | RewardKind::Energy {} | RewardKind::Alive {} => {
             foraging.is_some_and(|foraging| foraging.cost == 0.0)
         }
-        RewardKind::Moved { object } => is_fixed(object, document),
+        RewardKind::Moved { object } => is_fixed(object, document, source),
         RewardKind::Sensor { sensor } => {
             let place = source.names.sensors.iter().position(|(name, _)| name == sensor);
             let sensor = place.and_then(|place| document.sensors.get(place));
-            let constant = |kind: &SensorKind| matches!(kind, SensorKind::Constant { .. });
+            let constant = |kind: &SensorKind| source.registry.sensor(kind).is_some_and(|sensor| sensor.is_constant());
             sensor.is_some_and(|sensor| sensor.wrappers.is_empty() && constant(&sensor.kind))
         }
         _ => false,
@@ -60,13 +61,14 @@ fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Sou
 }
 
 /// Checks if robots have attachment devices.
-fn pulls(document: &Document) -> bool {
-    document.motors.iter().any(|motor| motor.enabled && motor.kind == MotorKind::Attachment {})
+pub(crate) fn pulls(document: &Document, registry: &Registry) -> bool {
+    let pulls = |kind: &MotorKind| registry.motor(kind).is_some_and(|motor| motor.pulls());
+    document.motors.iter().any(|motor| motor.enabled && pulls(&motor.kind))
 }
 
 /// Checks if a thing stays at its place in a trial.
-fn is_fixed(name: &str, document: &Document) -> bool {
+fn is_fixed(name: &str, document: &Document, source: &Source) -> bool {
     let movable = |kind: &ObjectKind| matches!(kind, ObjectKind::Block { .. } | ObjectKind::Ball { .. });
     let object = document.objects.iter().find(|object| object.name == name);
-    object.is_some_and(|object| !movable(&object.kind) && !pulls(document))
+    object.is_some_and(|object| !movable(&object.kind) && !pulls(document, &source.registry))
 }

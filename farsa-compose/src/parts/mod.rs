@@ -6,24 +6,18 @@ pub(crate) mod agents;
 pub(crate) mod behaviour;
 /// Networks of clusters and links.
 pub(crate) mod blocks;
-/// Quantity of a channel, for exports.
-pub(crate) mod channel_quantity;
 /// Choices among points. A choice may follow an earlier one.
 pub(crate) mod choice;
 /// Conditions that are formulas.
 pub(crate) mod conditions;
 /// Warning about a fitness that is the same for all individuals.
-mod constant_fitness;
+pub(crate) mod constant_fitness;
 /// Inputs and outputs between which a network is built.
 pub(crate) mod ends;
 /// Sensors and motors of a robot.
 pub(crate) mod equipment;
 /// Network of the 2013 program, with genes in its order.
 pub(crate) mod evonet;
-/// Cameras with sectors.
-pub(crate) mod eye;
-/// Infrared tables from files that a document names.
-pub(crate) mod files;
 /// A sensor or motor in a wrapper.
 pub(crate) mod filtered;
 /// Groups of equal robots, and their populations.

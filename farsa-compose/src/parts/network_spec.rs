@@ -65,6 +65,7 @@ impl NetworkSpec {
         let of_sensors = document.sensors.iter().map(|sensor| (sensor.enabled, sensor.channels.as_deref(), &[][..]));
         let inputs = channel_names("sensors", of_sensors, &sensors, source)?;
         let of_motors = document.motors.iter();
+        let words = |kind: &MotorKind| registry.motor(kind).map_or(&[][..], |motor| motor.channels());
         let of_motors = of_motors.map(|motor| (motor.enabled, motor.channels.as_deref(), words(&motor.kind)));
         let outputs = channel_names("motors", of_motors, &motors, source)?;
         let ends = Ends { inputs: &inputs, outputs: &outputs, sensors: &sensors, motors: &motors, absent: &absent };
@@ -94,15 +95,6 @@ fn spans(named: impl Iterator<Item = (String, usize)>) -> Spans {
         (name, [first - count, first])
     };
     named.map(span).collect()
-}
-
-/// Returns the words for the channels of a motor, empty for numbers.
-fn words(kind: &MotorKind) -> &'static [&'static str] {
-    match kind {
-        MotorKind::Wheels {} => &["left", "right"],
-        MotorKind::SpeedAndTurn { .. } => &["speed", "turn"],
-        _ => &[],
-    }
 }
 
 /// Names all channels of a list of parts: as the document does, or by words or numbers.

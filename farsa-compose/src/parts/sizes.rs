@@ -1,30 +1,29 @@
 //! Checks that bound the memory and the time of a step by the limits of a reader.
 
+use farsa_body::robots::MobileRobot;
 use farsa_lab::Error;
 
 use crate::check::source::Source;
-use crate::document::{Document, InfraredModel, SensorKind};
+use crate::document::Document;
 use crate::limits::Limits;
-use crate::parts::eye::rays_of;
 
-/// Checks the numbers of sensors, motors and rays of all robots, of which `infrared` rays belong to infrared sensors.
-pub(crate) fn check_parts(document: &Document, robots: usize, infrared: usize, source: &Source) -> Result<(), Error> {
+/// Checks the numbers of sensors, motors and rays of all robots, `None` for one with joints.
+pub(crate) fn check_parts(document: &Document, robots: &[Option<&MobileRobot>], source: &Source) -> Result<(), Error> {
     let Document { sensors, motors, .. } = document;
     let Limits { parts, rays: most_rays, .. } = source.limits;
     let count = sensors.iter().filter(|part| part.enabled).count() + motors.iter().filter(|part| part.enabled).count();
-    if count.saturating_mul(robots) > parts {
-        let why = format!("and motors are {count} on each of {robots} robots; at most {parts} in all");
+    let number = robots.len();
+    if count.saturating_mul(number) > parts {
+        let why = format!("and motors are {count} on each of {number} robots; at most {parts} in all");
         return Err(source.wrong("/sensors", why));
     }
     let mut rays = 0_usize;
     for (index, sensor) in sensors.iter().enumerate().filter(|(_, sensor)| sensor.enabled) {
-        rays = rays.saturating_add(match sensor.kind {
-            SensorKind::Infrared { model: InfraredModel::Rays, .. } => infrared,
-            _ => rays_of(&sensor.kind).saturating_mul(robots),
-        });
+        let Some(part) = source.registry.sensor(&sensor.kind) else { continue };
+        rays = robots.iter().fold(rays, |rays, robot| rays.saturating_add(part.rays(*robot)));
         if rays > most_rays {
             let why =
-                format!("and those before it send out {rays} rays from {robots} robots; at most {most_rays} in all");
+                format!("and those before it send out {rays} rays from {number} robots; at most {most_rays} in all");
             return Err(source.wrong(&format!("/sensors/{index}"), why));
         }
     }

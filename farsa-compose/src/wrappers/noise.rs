@@ -25,7 +25,7 @@ pub(super) struct NormalNoise {
     deviation: f64,
 }
 
-/// A filter whose noise begins anew in each trial.
+/// A filter whose noise begins with each trial.
 #[derive(Clone, Debug)]
 pub(super) struct NoiseFilter {
     around: Around<Noisy<Values, Vec<f32>>>,

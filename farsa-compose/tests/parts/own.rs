@@ -57,9 +57,9 @@ impl SensorPart for Bearing {
     fn sensor(&self, scene: &PartScene<'_>) -> Result<BearingSensor, Error> {
         Ok(BearingSensor { from: scene.body(None)?, to: scene.thing(&self.to)?, scale: 1.0 / self.reach as f32 })
     }
-    fn quantity(&self, channel: usize) -> Quantity {
+    fn quantity(&self, channel: usize, _: &PartScene<'_>) -> Quantity {
         let text = format!("{} of the way to {}", ["x", "y"][channel % 2], self.to);
-        Quantity { text, unit: "m", ends: [0.0, self.reach] }
+        Quantity::new(text, "m", [0.0, self.reach])
     }
 }
 

@@ -1,9 +1,7 @@
 //! Positions of markers relative to a body.
 
-use farsa_body::ports::{Channels, Sensor};
+use farsa_body::ports::{BodyId, Channels, Handles, Kinematics, Sensor};
 use farsa_body::sensors::{Axes, Point};
-
-use crate::jointed::SpatialWorld;
 
 /// A sensor of a marker's position relative to a point of a body, in three channels, as `TargetPosition` for bodies.
 #[derive(Clone, Copy, Debug)]
@@ -18,12 +16,12 @@ pub(crate) struct MarkerPosition {
 
 impl MarkerPosition {
     /// Creates a sensor of `scale` times the vector to the marker of this number.
-    pub(crate) fn new(marker: usize, from: Point, axes: Axes, scale: f32) -> Self {
+    pub(super) fn new(marker: usize, from: Point, axes: Axes, scale: f32) -> Self {
         Self { marker, from, axes, scale, place: [0.0; 3] }
     }
 
     /// Updates the position from those of all markers [m].
-    pub(crate) fn look(&mut self, markers: &[[f32; 3]]) {
+    pub(super) fn look(&mut self, markers: &[[f32; 3]]) {
         self.place = markers[self.marker];
     }
 }
@@ -34,7 +32,7 @@ impl Channels for MarkerPosition {
     }
 }
 
-impl<W: SpatialWorld> Sensor<W> for MarkerPosition {
+impl<W: Kinematics + Handles<Body = BodyId>> Sensor<W> for MarkerPosition {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let pose = world.pose(self.from.body);
         let from = pose.transform(self.from.at);

@@ -12,7 +12,7 @@ use crate::part::term::{Term, TermPart};
 ///
 /// Source: `[DeGreeff2010]`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-pub(crate) struct Exchanges {
+pub(super) struct Exchanges {
     /// Name of a disc or rectangle.
     area: String,
     /// Name of the other one.
@@ -21,7 +21,7 @@ pub(crate) struct Exchanges {
 
 /// Exchanges of a trial.
 #[derive(Clone, Debug)]
-pub(crate) struct ExchangesTerm {
+pub(super) struct ExchangesTerm {
     robots: [BodyId; 2],
     areas: [Area; 2],
     /// True if the first robot was last in the first area, false if it was in the second. `None` before both were in areas.

@@ -1,21 +1,19 @@
 //! Pose and velocity of a body of the robot's file, whose frame is off that of its segment.
 
 use farsa_body::Pose;
-use farsa_body::ports::{BodyId, Channels, Sensor};
+use farsa_body::ports::{BodyId, Channels, Handles, Kinematics, Sensor};
 use farsa_body::sensors::Axes;
-
-use crate::jointed::SpatialWorld;
 
 /// A sensor of the pose of a frame, in seven channels, as `BodyPose` for segments.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FramePose {
+pub(super) struct FramePose {
     body: BodyId,
     frame: Pose,
 }
 
 impl FramePose {
     /// Creates a sensor of a frame in the axes of a segment.
-    pub(crate) fn new(body: BodyId, frame: Pose) -> Self {
+    pub(super) fn new(body: BodyId, frame: Pose) -> Self {
         Self { body, frame }
     }
 }
@@ -26,7 +24,7 @@ impl Channels for FramePose {
     }
 }
 
-impl<W: SpatialWorld> Sensor<W> for FramePose {
+impl<W: Kinematics + Handles<Body = BodyId>> Sensor<W> for FramePose {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let Pose { position: [x, y, z], rotation } = world.pose(self.body).compose(&self.frame);
         let [a, b, c, w] = if rotation[3] < 0.0 { rotation.map(|q| -q) } else { rotation };
@@ -36,7 +34,7 @@ impl<W: SpatialWorld> Sensor<W> for FramePose {
 
 /// A sensor of the velocity of a frame, in six channels, as `BodyVelocity` for segments.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrameVelocity {
+pub(super) struct FrameVelocity {
     body: BodyId,
     frame: Pose,
     axes: Axes,
@@ -44,7 +42,7 @@ pub(crate) struct FrameVelocity {
 
 impl FrameVelocity {
     /// Creates a sensor of a frame in the axes of a segment.
-    pub(crate) fn new(body: BodyId, frame: Pose, axes: Axes) -> Self {
+    pub(super) fn new(body: BodyId, frame: Pose, axes: Axes) -> Self {
         Self { body, frame, axes }
     }
 }
@@ -55,7 +53,7 @@ impl Channels for FrameVelocity {
     }
 }
 
-impl<W: SpatialWorld> Sensor<W> for FrameVelocity {
+impl<W: Kinematics + Handles<Body = BodyId>> Sensor<W> for FrameVelocity {
     fn read(&mut self, world: &W, out: &mut [f32]) {
         let (twist, pose) = (world.velocity(self.body), world.pose(self.body));
         let ([x, y, z], [u, v, w]) = (pose.rotate(self.frame.position), twist.angular);

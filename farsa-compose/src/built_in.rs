@@ -1,0 +1,36 @@
+//! The parts of the format, registered like those of a program.
+
+use std::sync::LazyLock;
+
+use farsa_lab::Error;
+use farsa_lab::advanced::Part;
+use serde_json::Value;
+
+use crate::check::registry::Registry;
+use crate::motors::motors;
+use crate::sensors::sensors;
+use crate::terms::terms;
+use crate::wrappers::wrappers;
+
+fn built_in() -> Vec<Part> {
+    [sensors(), motors(), wrappers(), terms()].into_iter().flatten().collect()
+}
+
+/// Registry of the format, whose schemas are built once because each takes a megabyte.
+static BUILT_IN: LazyLock<Registry> = LazyLock::new(|| {
+    // A test builds the same registry, so an error cannot occur later.
+    Registry::empty().with(&built_in()).unwrap_or_default()
+});
+
+/// Returns the registry of the format with the parts of a program.
+///
+/// # Errors
+/// [`Error::Usage`] for a name that is invalid or taken, and for keys that a file cannot have.
+pub(crate) fn registry(parts: &[Part]) -> Result<Registry, Error> {
+    BUILT_IN.with(parts)
+}
+
+/// Creates the JSON schema of the format. You can use it to check files in an editor, for example.
+pub fn schema() -> Value {
+    BUILT_IN.schemas[0].clone()
+}
