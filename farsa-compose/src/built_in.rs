@@ -8,12 +8,13 @@ use serde_json::Value;
 
 use crate::check::registry::Registry;
 use crate::motors::motors;
+use crate::robots::robots;
 use crate::sensors::sensors;
 use crate::terms::terms;
 use crate::wrappers::wrappers;
 
 fn built_in() -> Vec<Part> {
-    [sensors(), motors(), wrappers(), terms()].into_iter().flatten().collect()
+    [robots(), sensors(), motors(), wrappers(), terms()].into_iter().flatten().collect()
 }
 
 /// Registry of the format, whose schemas are built once because each takes a megabyte.

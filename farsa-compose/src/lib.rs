@@ -16,6 +16,7 @@ mod motors;
 mod name;
 pub mod part;
 mod parts;
+mod robots;
 mod sensors;
 mod terms;
 mod wrappers;

@@ -6,8 +6,9 @@ use farsa_lab::Error;
 use farsa_physics::arena::{Area, Arena, CollisionRule, Cylinder, Wall};
 
 use crate::check::source::Source;
-use crate::document::{Collisions, Document, Engine, Object, ObjectKind, Robot, RobotKind};
+use crate::document::{Collisions, Document, Engine, Object, ObjectKind, Robot};
 use crate::part;
+use crate::part::definition::Maker;
 use crate::parts::groups::Groups;
 
 /// A named thing.
@@ -335,7 +336,7 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
     let mut robots = Vec::new();
     for (number, (name, color, robot, path)) in groups.iter().enumerate() {
         let Robot { file, floating, base, kind, .. } = robot;
-        let joints = kind.has_joints();
+        let joints = kind.joints;
         let given = [("kind", joints), ("file", file.is_some()), ("floating", *floating), ("base", *base != [0.0; 3])];
         if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
             return Err(source.wrong(&format!("{path}/{key}"), "is for robots with joints; this one is on wheels"));
@@ -366,14 +367,10 @@ fn robots(document: &Document, source: &Source) -> Result<(Vec<MobileRobot>, Gro
 
 /// Builds a named robot with the changes of the document.
 fn mobile_robot(robot: &Robot, source: &Source) -> MobileRobot {
-    let mut mobile = match &robot.kind {
-        RobotKind::Registered(registered) => {
-            source.registry.wheels(&registered.name).map_or_else(MobileRobot::khepera, Clone::clone)
-        }
-        // `check` has rejected robots with joints.
-        RobotKind::Khepera | RobotKind::ArmAndHand | RobotKind::Model => MobileRobot::khepera(),
-        RobotKind::EPuck => MobileRobot::e_puck(),
-        RobotKind::Marxbot => MobileRobot::marxbot(),
+    // `check` has rejected robots with joints.
+    let mut mobile = match source.registry.robot(&robot.kind) {
+        Some(Maker::Wheels(mobile)) => (**mobile).clone(),
+        _ => MobileRobot::khepera(),
     };
     mobile.radius = robot.radius.unwrap_or(mobile.radius);
     mobile.infrared.range = robot.infrared_range.unwrap_or(mobile.infrared.range);

@@ -4,8 +4,8 @@ use farsa_lab::Error;
 use serde_json::{Map, Value};
 
 use crate::check::source::Source;
-use crate::document::{Document, NetworkKind, ObjectKind, Placing, RewardKind, RobotKind, Wrapper};
-use crate::part::definition::Build;
+use crate::document::{Document, NetworkKind, ObjectKind, Placing, RewardKind, Wrapper};
+use crate::part::definition::{Build, Maker};
 
 /// Adds the defaults of keys to those of a part.
 fn complete_keys(
@@ -71,10 +71,7 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
     }
     let groups = document.robots.iter_mut().map(|group| &mut group.robot);
     for robot in document.robot.iter_mut().chain(groups) {
-        if let RobotKind::Registered(known) = &mut robot.kind {
-            known.joints =
-                source.registry.find(&known.name, |build| matches!(build, Build::Joints(_)).then_some(())).is_some();
-        }
+        robot.kind.joints = matches!(source.registry.robot(&robot.kind), Some(Maker::Joints(_) | Maker::File));
     }
     Ok(())
 }

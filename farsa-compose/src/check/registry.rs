@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use farsa_body::robot::Robot;
-use farsa_body::robots::MobileRobot;
 use farsa_lab::Error;
 use farsa_lab::advanced::Part;
 use serde_json::{Value, json};
 
 use crate::check::schema::{SCHEMA, close, scene_schema};
-use crate::document::{MotorKind, SensorKind};
+use crate::document::{MotorKind, RobotKind, SensorKind};
 use crate::name::is_name;
-use crate::part::definition::{Build, Definition};
+use crate::part::definition::{Build, Definition, Maker};
 use crate::part::motor::AnyMotor;
 use crate::part::sensor::AnySensor;
 
@@ -33,7 +31,7 @@ fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
         Build::Wrapper(_) => ("Wrapper", "kind", "wrapper"),
         Build::Network(_) => ("Network", "kind", "network"),
         Build::Thing(_) => ("Object", "kind", "thing"),
-        Build::Wheels(_) | Build::Joints(_) => ("RobotKind", "", "robot"),
+        Build::Robot(_) => ("RobotKind", "", "robot"),
     }
 }
 
@@ -61,7 +59,7 @@ impl Registry {
                 return Err(wrong("has no valid name: 1 to 40 lower-case letters, digits, - and _"));
             }
             if tag.is_empty() {
-                add_word(&mut schema, definition.name).map_err(wrong)?;
+                add_word(&mut schema, definition).map_err(wrong)?;
             } else {
                 add_branch(&mut schema, definition, [kinds, tag]).map_err(|why| wrong(&why))?;
             }
@@ -94,25 +92,20 @@ impl Registry {
         read?(&motor.keys).ok()
     }
 
-    /// Finds a robot on wheels.
-    pub(crate) fn wheels(&self, name: &str) -> Option<&MobileRobot> {
-        self.find(name, |build| if let Build::Wheels(robot) = build { Some(&**robot) } else { None })
-    }
-
-    /// Finds a robot with joints.
-    pub(crate) fn joints(&self, name: &str) -> Option<&Robot> {
-        self.find(name, |build| if let Build::Joints(robot) = build { Some(&**robot) } else { None })
+    /// Finds where a robot comes from.
+    pub(crate) fn robot(&self, kind: &RobotKind) -> Option<&Maker> {
+        self.find(&kind.name, |build| if let Build::Robot(maker) = build { Some(maker) } else { None })
     }
 }
 
 /// Adds a word to the kinds of robots.
-fn add_word(schema: &mut Value, name: &str) -> Result<(), &'static str> {
+fn add_word(schema: &mut Value, Definition { name, about, .. }: &Definition) -> Result<(), &'static str> {
     let kinds = schema.pointer_mut("/$defs/RobotKind/oneOf").and_then(Value::as_array_mut);
     let kinds = kinds.ok_or("has no place in the schema")?;
-    if kinds.iter().any(|kind| kind["const"] == name) {
+    if kinds.iter().any(|kind| kind["const"] == *name) {
         return Err("has the name of another one");
     }
-    kinds.push(json!({ "const": name, "type": "string", "description": "A robot of the user's program." }));
+    kinds.push(json!({ "const": name, "type": "string", "description": about }));
     Ok(())
 }
 

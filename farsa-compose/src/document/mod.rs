@@ -44,7 +44,7 @@ pub use motor::Motor;
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
 pub use registered::{MotorKind, SensorKind, Wrapper};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
-pub use robot::{RegisteredRobot, Robot, RobotGroup, RobotKind, Team};
+pub use robot::{Robot, RobotGroup, RobotKind, Team};
 pub use sensor::Sensor;
 pub use world::{Collisions, Engine, Object, ObjectKind, World};
 
@@ -128,7 +128,7 @@ pub struct Document {
 impl Document {
     /// Returns true for a robot with joints instead of wheels.
     pub(crate) fn has_joints(&self) -> bool {
-        self.robot.as_ref().is_some_and(|robot| robot.kind.has_joints())
+        self.robot.as_ref().is_some_and(|robot| robot.kind.joints)
     }
 }
 

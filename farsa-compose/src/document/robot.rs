@@ -1,6 +1,8 @@
 //! Robots.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use crate::name::NAME;
@@ -63,55 +65,35 @@ fn one() -> u32 {
     1
 }
 
-/// Robots of FARSA.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum RobotKind {
-    /// 35 mm radius, eight infrared sensors.
-    Khepera,
-    /// 35 mm radius, eight infrared sensors, three ground sensors, LEDs, a signal.
-    EPuck,
-    /// 85 mm radius, 24 infrared sensors, twelve ground sensors, LEDs, a signal, an attachment device.
-    Marxbot,
-    /// An arm of seven joints with muscles, and a hand of twenty joints.
-    ArmAndHand,
-    /// A model from a URDF or MJCF file.
-    Model,
-    /// A robot of the user's program.
-    #[serde(untagged)]
-    #[schemars(skip)]
-    Registered(RegisteredRobot),
-}
-
-/// Name of a robot of the user's program.
+/// Name of a registered robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
-pub struct RegisteredRobot {
+pub struct RobotKind {
     /// Registered name.
     pub name: String,
     /// True for joints instead of wheels.
     pub(crate) joints: bool,
 }
 
-impl From<String> for RegisteredRobot {
+impl From<String> for RobotKind {
     fn from(name: String) -> Self {
         Self { name, joints: false }
     }
 }
 
-impl From<RegisteredRobot> for String {
-    fn from(robot: RegisteredRobot) -> Self {
+impl From<RobotKind> for String {
+    fn from(robot: RobotKind) -> Self {
         robot.name
     }
 }
 
-impl RobotKind {
-    /// Returns true for robots with joints instead of wheels.
-    pub(crate) fn has_joints(&self) -> bool {
-        match self {
-            Self::ArmAndHand | Self::Model => true,
-            Self::Registered(robot) => robot.joints,
-            Self::Khepera | Self::EPuck | Self::Marxbot => false,
-        }
+impl JsonSchema for RobotKind {
+    fn schema_name() -> Cow<'static, str> {
+        "RobotKind".into()
+    }
+
+    /// The registry adds the names.
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "description": "Robots of FARSA.", "oneOf": [] })
     }
 }

@@ -3,12 +3,12 @@
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
 use farsa_body::robot::Robot;
-use farsa_body::robots::ArmAndHand;
 use farsa_lab::Error;
 use farsa_models::{Imported, Limits, Meshes, ReadOptions};
 
 use crate::check::source::Source;
-use crate::document::{self, Document, RobotKind};
+use crate::document::{self, Document};
+use crate::part::definition::Maker;
 
 /// A robot with the frames of the links or bodies of its file.
 pub(crate) struct RobotModel {
@@ -39,20 +39,15 @@ impl RobotModel {
         if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
             return Err(source.wrong(&format!("/robot/{key}"), "is for robots on wheels; this one has joints"));
         }
-        let mut body = match (kind, file) {
-            (RobotKind::Model, Some(file)) => Self::from_file(file, *floating, document, source)?,
-            (RobotKind::Model, None) => return Err(source.wrong("/robot", "lacks the key `file`, that of the model")),
+        let mut body = match (source.registry.robot(kind), file) {
+            (Some(Maker::File), Some(file)) => Self::from_file(file, *floating, document, source)?,
+            (Some(Maker::File), None) => {
+                return Err(source.wrong("/robot", "lacks the key `file`, that of the model"));
+            }
             (_, Some(_)) => return Err(source.wrong("/robot/file", "is for the kind `model`")),
             (_, None) if *floating => return Err(source.wrong("/robot/floating", "is for the kind `model`")),
-            (RobotKind::Registered(registered), None) => {
-                let robot = source.registry.joints(&registered.name);
-                let robot = robot.ok_or_else(|| source.wrong("/robot/kind", "is no robot with joints"))?;
-                Self { robot: robot.clone(), frames: Vec::new(), touches: true }
-            }
-            (_, None) => {
-                let robot = ArmAndHand::default().robot().map_err(|error| source.wrong("/robot", error))?;
-                Self { robot, frames: Vec::new(), touches: true }
-            }
+            (Some(Maker::Joints(robot)), None) => Self { robot: (**robot).clone(), frames: Vec::new(), touches: true },
+            (_, None) => return Err(source.wrong("/robot/kind", "is no robot with joints")),
         };
         body.place(*base);
         Ok(body)

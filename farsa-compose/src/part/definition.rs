@@ -31,6 +31,8 @@ type Composing = fn(&Given, &Object) -> Result<Vec<Object>, Error>;
 #[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub(crate) name: &'static str,
+    /// Description of a robot. Other parts have one in their schema.
+    pub(crate) about: &'static str,
     /// Generates the schema of the keys.
     pub(crate) schema: fn() -> Schema,
     /// Adds the defaults of keys.
@@ -53,19 +55,28 @@ pub(crate) enum Build {
     Wrapper(Reading<dyn AnyWrapper>),
     Network(Wiring),
     Thing(Composing),
+    Robot(Maker),
+}
+
+/// Where a robot comes from.
+#[derive(Clone, Debug)]
+pub(crate) enum Maker {
     Wheels(Box<MobileRobot>),
     Joints(Box<Robot>),
+    /// A robot with joints from a file.
+    File,
 }
 
 impl Definition {
     /// Defines a part with the keys of `K`.
     pub(crate) fn part<K: Keys>(name: &'static str, build: Build) -> Part {
-        Part::new(Self { name, schema: schema::<K>, complete: complete::<K>, build })
+        Part::new(Self { name, about: "", schema: schema::<K>, complete: complete::<K>, build })
     }
 
     /// Defines a robot, which has no further keys.
-    pub(crate) fn robot(name: &'static str, build: Build) -> Part {
-        Part::new(Self { name, schema: || Schema::default(), complete: |keys| Ok(keys.clone()), build })
+    pub(crate) fn robot(name: &'static str, about: &'static str, maker: Maker) -> Part {
+        let (schema, complete) = (|| Schema::default(), |keys: &Given| Ok(keys.clone()));
+        Part::new(Self { name, about, schema, complete, build: Build::Robot(maker) })
     }
 }
 

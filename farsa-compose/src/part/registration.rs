@@ -6,7 +6,7 @@ use farsa_lab::Error;
 use farsa_lab::advanced::Part;
 
 use crate::document::Object;
-use crate::part::definition::{Build, Definition, Given, keys};
+use crate::part::definition::{Build, Definition, Given, Maker, keys};
 use crate::part::motor::{AnyMotor, MotorPart};
 use crate::part::network::{Built, NetworkPart, built};
 use crate::part::object::{
@@ -143,12 +143,15 @@ pub fn thing<P: ThingPart>(name: &'static str) -> Part {
     Definition::part::<P>(name, Build::Thing(things::<P>))
 }
 
+/// Description of robots.
+const OWN: &str = "A robot of the user's program.";
+
 /// Registers a robot on wheels under a name, for the key `kind` of `robot`.
 pub fn robot_on_wheels(name: &'static str, robot: MobileRobot) -> Part {
-    Definition::robot(name, Build::Wheels(Box::new(robot)))
+    Definition::robot(name, OWN, Maker::Wheels(Box::new(robot)))
 }
 
 /// Registers a robot with joints under a name, for the key `kind` of `robot`.
 pub fn robot_with_joints(name: &'static str, robot: Robot) -> Part {
-    Definition::robot(name, Build::Joints(Box::new(robot)))
+    Definition::robot(name, OWN, Maker::Joints(Box::new(robot)))
 }
