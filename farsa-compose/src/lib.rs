@@ -18,6 +18,7 @@ pub mod part;
 mod parts;
 mod robots;
 mod sensors;
+mod starts;
 mod terms;
 mod wrappers;
 

@@ -6,6 +6,7 @@ use farsa_body::Pose;
 use farsa_num::Stream;
 use farsa_physics::arena::{Lane, World};
 
+use crate::part::Spot;
 use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
 
 /// A world of robots in a plane, in which registered parts work.
@@ -21,7 +22,7 @@ pub(crate) trait ArenaWorld: PlanarWorld {
     /// Computes a registered term.
     fn value(&self, term: &dyn PlanarTerm) -> f64;
     /// Draws a pose by a registered placement.
-    fn draw(&self, start: &dyn PlanarStart, number: usize, stream: &mut Stream) -> Option<Pose>;
+    fn draw(&self, start: &dyn PlanarStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose>;
 }
 
 macro_rules! arena_world {
@@ -42,8 +43,8 @@ macro_rules! arena_world {
             fn value(&self, term: &dyn PlanarTerm) -> f64 {
                 term.value(self)
             }
-            fn draw(&self, start: &dyn PlanarStart, number: usize, stream: &mut Stream) -> Option<Pose> {
-                start.pose(self, number, stream)
+            fn draw(&self, start: &dyn PlanarStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose> {
+                start.pose(self, spot, stream)
             }
         }
     };

@@ -280,6 +280,7 @@ impl Body for ArenaEpisode {
             scene: &self.setup.scene,
             robot,
             files: None,
+            rule: None,
             path: "",
             source: &source,
         }));

@@ -101,7 +101,9 @@ impl Measure {
             Ok((measure(radius, within), Some(body)))
         };
         if let RewardKind::Registered { kind, keys } = kind {
-            let term = |robot| registered::term(kind, keys, PartOfPlanar { scene, robot, files: None, path, source });
+            let term = |robot| {
+                registered::term(kind, keys, PartOfPlanar { scene, robot, files: None, rule: None, path, source })
+            };
             let terms = (0..scene.robots.len()).map(term).collect::<Result<_, _>>()?;
             return Ok((Self::Registered(terms), None));
         }

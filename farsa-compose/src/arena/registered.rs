@@ -10,10 +10,10 @@ use farsa_lab::Error;
 
 use crate::arena::ArenaWorld;
 use crate::arena::field::Forager;
-use crate::arena::scene::{Scene, Thing, one_body};
+use crate::arena::scene::{Scene, Thing, flat, one_body, within_walls};
 use crate::check::completed::builder;
 use crate::check::source::Source;
-use crate::document::{MotorKind, SensorKind};
+use crate::document::{MotorKind, Placing, SensorKind};
 use crate::part::PartScene;
 use crate::part::definition::{Build, Given};
 use crate::part::files::Files;
@@ -21,6 +21,7 @@ use crate::part::named_point::NamedPoint;
 use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
 use crate::part::scene::{Area, JointAbout, Surroundings, WITH_JOINTS};
 use crate::part::wiring::Wiring;
+use crate::parts::rule_of::RuleOf;
 use crate::sensors::forager::ForagerSensor;
 use crate::sensors::infrared::InfraredSensor;
 
@@ -97,6 +98,8 @@ pub(crate) struct PartOfPlanar<'s> {
     pub(crate) robot: usize,
     /// Files of the document, for sensors.
     pub(crate) files: Option<&'s Files<'s>>,
+    /// Rule of a placement.
+    pub(crate) rule: Option<RuleOf<'s>>,
     /// Path of the part in the document.
     pub(crate) path: &'s str,
     pub(crate) source: &'s Source,
@@ -184,6 +187,35 @@ impl Surroundings for PartOfPlanar<'_> {
 
     fn has_food(&self) -> bool {
         self.scene.has_food
+    }
+
+    fn placed_before(&self, name: &str, key: &str) -> Result<BodyId, Error> {
+        let path = format!("{}/{key}", self.path);
+        let body = self.scene.body(name, &path, self.source)?;
+        let is_placed = self.rule.is_some_and(|RuleOf { document, placed, .. }| {
+            let stands = document.objects.iter().any(|object| object.name == name && object.at.is_some());
+            stands || placed.contains(&body)
+        });
+        let why = || self.source.wrong(&path, format!("`{name}` has to be placed before"));
+        is_placed.then_some(body).ok_or_else(why)
+    }
+
+    fn start_point(&self, at: &[f64], key: &str) -> Result<[f64; 3], Error> {
+        let path = format!("{}/{key}", self.path);
+        let [x, y] = flat(at, &path, self.source)?;
+        if let Some(RuleOf { document, number, .. }) = self.rule {
+            let place = &document.start[number].place;
+            // Only lamps may be beyond the walls.
+            if !document.objects.iter().any(|object| object.name == *place && object.shines()) {
+                within_walls(document, [x, y], &path, self.source)?;
+            }
+        }
+        Ok([x, y, 0.0])
+    }
+
+    fn earlier_choice(&self, name: &str, points: usize) -> Result<usize, Error> {
+        let rule = self.rule.ok_or_else(|| self.error("is no placement".into()))?;
+        rule.earlier_choice(name, points, self.source)
     }
 
     fn shows(&self) -> bool {
@@ -288,10 +320,11 @@ pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<
 }
 
 /// Builds a registered placement in a scene.
-pub(crate) fn start(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarStart>, Error> {
+pub(crate) fn start(given: &Placing, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarStart>, Error> {
+    let Placing { at: kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), WITH_JOINTS, |build| match build {
-        Build::Start((build, _)) => Some(*build),
+    let build = builder((kind, &format!("{path}/at"), source), WITH_JOINTS, |build| match build {
+        Build::Start((build, _), _) => Some(*build),
         _ => None,
     });
     let build = build?;

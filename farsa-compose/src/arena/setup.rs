@@ -71,12 +71,18 @@ impl Setup {
         for robot in 0..scene.robots.len() {
             let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
             let make = |kind, path: &str| {
-                registered::sensor(kind, PartOfPlanar { scene: &scene, robot, files: Some(&files), path, source })
+                registered::sensor(
+                    kind,
+                    PartOfPlanar { scene: &scene, robot, files: Some(&files), rule: None, path, source },
+                )
             };
             let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
             let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
             let make = |kind, path: &str| {
-                registered::motor(kind, PartOfPlanar { scene: &scene, robot, files: Some(&files), path, source })
+                registered::motor(
+                    kind,
+                    PartOfPlanar { scene: &scene, robot, files: Some(&files), rule: None, path, source },
+                )
             };
             let motors = Part::list("motors", motors, make, &mut budget, source)?;
             let drawn = drawn(&sensors);

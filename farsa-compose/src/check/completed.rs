@@ -4,7 +4,7 @@ use farsa_lab::Error;
 use serde_json::{Map, Value};
 
 use crate::check::source::Source;
-use crate::document::{Document, NetworkKind, ObjectKind, Placing, RewardKind, Wrapper};
+use crate::document::{Document, NetworkKind, ObjectKind, RewardKind, Wrapper};
 use crate::part::definition::{Build, Maker};
 
 /// Adds the defaults of keys to those of a part.
@@ -57,9 +57,7 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
         complete_term(&mut term.kind, &format!("/reward/{index}"), source)?;
     }
     for (index, start) in document.start.iter_mut().enumerate() {
-        if let Placing::Registered { at, keys } = &mut start.how {
-            completed("placement", at, keys, &format!("/start/{index}"))?;
-        }
+        completed("placement", &start.how.at, &mut start.how.keys, &format!("/start/{index}"))?;
     }
     if let NetworkKind::Registered { kind, keys } = &mut document.network.kind {
         completed("network", kind, keys, "/network")?;

@@ -7,11 +7,12 @@ use farsa_lab::advanced::Part;
 use serde_json::{Value, json};
 
 use crate::check::schema::{SCHEMA, close, scene_schema};
-use crate::document::{MotorKind, RobotKind, SensorKind};
+use crate::document::{MotorKind, Placing, RobotKind, SensorKind};
 use crate::name::is_name;
 use crate::part::definition::{Build, Definition, Maker};
 use crate::part::motor::AnyMotor;
 use crate::part::sensor::AnySensor;
+use crate::part::start::AnyStart;
 
 /// Registered parts.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +28,7 @@ fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
         Build::Sensor(..) => ("Sensor", "kind", "sensor"),
         Build::Motor(..) => ("Motor", "kind", "motor"),
         Build::Term(_) => ("Reward", "kind", "term"),
-        Build::Start(_) => ("Start", "at", "placement"),
+        Build::Start(..) => ("Start", "at", "placement"),
         Build::Wrapper(_) => ("Wrapper", "kind", "wrapper"),
         Build::Network(_) => ("Network", "kind", "network"),
         Build::Thing(_) => ("Object", "kind", "thing"),
@@ -90,6 +91,12 @@ impl Registry {
     pub(crate) fn motor(&self, motor: &MotorKind) -> Option<Box<dyn AnyMotor>> {
         let read = self.find(&motor.kind, |build| if let Build::Motor(_, read) = build { Some(*read) } else { None });
         read?(&motor.keys).ok()
+    }
+
+    /// Reads the facts of a placement.
+    pub(crate) fn start(&self, start: &Placing) -> Option<Box<dyn AnyStart>> {
+        let read = self.find(&start.at, |build| if let Build::Start(_, read) = build { Some(*read) } else { None });
+        read?(&start.keys).ok()
     }
 
     /// Finds where a robot comes from.

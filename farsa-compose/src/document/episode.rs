@@ -2,7 +2,8 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+
+use crate::document::registered::Placing;
 
 /// Steps and trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -45,102 +46,4 @@ pub struct Start {
     /// The kind of placement.
     #[serde(flatten)]
     pub how: Placing,
-}
-
-/// Kinds of placements. The heading of a robot is drawn uniformly after its place.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "at", rename_all = "kebab-case")]
-pub enum Placing {
-    /// Uniformly in free space.
-    Anywhere {
-        /// Least distance from the walls [m].
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1000.0))]
-        walls: f64,
-        /// Least distance from everything placed earlier [m], for areas from other areas.
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1000.0))]
-        apart: f64,
-        /// Measures both distances from the centers of areas instead of their edges.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        centers: bool,
-    },
-    /// Uniformly in free space near a thing.
-    Near {
-        /// Name of the thing.
-        of: String,
-        /// Greatest distance between the centers [m].
-        #[schemars(range(min = 0.0, max = 1000.0))]
-        within: f64,
-        /// Least distance from the walls [m].
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1000.0))]
-        walls: f64,
-        /// Least distance from everything placed earlier [m].
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1000.0))]
-        apart: f64,
-    },
-    /// In a uniformly drawn direction from a thing, at a uniformly drawn distance between the centers.
-    Around {
-        /// Name of the thing.
-        of: String,
-        /// Least and greatest distance [m].
-        #[schemars(inner(range(min = 0.0, max = 1000.0)))]
-        distance: [f64; 2],
-    },
-    /// Uniformly in a box, for experiments with joints.
-    InBox {
-        /// Least x, y and z [m].
-        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
-        low: [f64; 3],
-        /// Greatest x, y and z [m].
-        #[schemars(inner(range(min = -1000.0, max = 1000.0)))]
-        high: [f64; 3],
-        /// Least distance from everything placed earlier [m].
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1000.0))]
-        apart: f64,
-    },
-    /// On one of these points, drawn from those without an earlier thing.
-    OneOf {
-        /// x and y of each point, and z for experiments with joints [m].
-        #[schemars(length(min = 1, max = 100))]
-        points: Vec<Vec<f64>>,
-        /// An earlier placement `one-of` the same number of points. The point of the same number is taken, even if it
-        /// is occupied. For several robots it is the point of the last one.
-        like: Option<String>,
-    },
-    /// A joint at a uniformly drawn position.
-    Turned {
-        /// Least position [rad or m].
-        #[schemars(range(min = -1e6, max = 1e6))]
-        low: f64,
-        /// Greatest position [rad or m].
-        #[schemars(range(min = -1e6, max = 1e6))]
-        high: f64,
-    },
-    /// At a fixed point, and for robots with a fixed heading.
-    Fixed {
-        /// Center: x and y, and z for experiments with joints [m].
-        #[schemars(length(min = 2, max = 3), inner(range(min = -1000.0, max = 1000.0)))]
-        point: Vec<f64>,
-        /// Heading, counter-clockwise from the x axis [deg].
-        #[serde(default)]
-        #[schemars(range(min = -360.0, max = 360.0))]
-        heading: f64,
-        /// Draws the heading instead.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        drawn_heading: bool,
-    },
-    /// A placement of the user's program, with its keys.
-    #[serde(untagged)]
-    #[schemars(skip)]
-    Registered {
-        /// Registered name.
-        at: String,
-        /// Keys.
-        #[serde(flatten)]
-        keys: Map<String, Value>,
-    },
 }

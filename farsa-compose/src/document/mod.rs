@@ -36,13 +36,13 @@ mod world;
 
 pub use behaviour::{BehaviourOfTerms, DescriptorTerm, ObjectiveTerm};
 pub use blocks::{Blocks, Cluster, ClusterActivation, Link};
-pub use episode::{Ending, Episode, Placing, Start};
+pub use episode::{Ending, Episode, Start};
 pub use evonet::{Evonet, EvonetNeurons};
 pub use foraging::Foraging;
 pub use learning::{Learning, LossName};
 pub use motor::Motor;
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
-pub use registered::{MotorKind, SensorKind, Wrapper};
+pub use registered::{MotorKind, Placing, SensorKind, Wrapper};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
 pub use robot::{Robot, RobotGroup, RobotKind, Team};
 pub use sensor::Sensor;

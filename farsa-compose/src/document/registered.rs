@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 macro_rules! registered {
-    ($name:ident, $about:literal) => {
+    ($name:ident, $tag:ident, $about:literal) => {
         #[doc = $about]
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub struct $name {
             /// Registered name.
-            pub kind: String,
+            pub $tag: String,
             /// Keys.
             #[serde(flatten)]
             pub keys: Map<String, Value>,
@@ -30,6 +30,7 @@ macro_rules! registered {
         }
     };
 }
-registered!(Wrapper, "A change of values on their way from a sensor or to a motor.");
-registered!(SensorKind, "A kind of sensor.");
-registered!(MotorKind, "A kind of motor.");
+registered!(Wrapper, kind, "A change of values on their way from a sensor or to a motor.");
+registered!(SensorKind, kind, "A kind of sensor.");
+registered!(MotorKind, kind, "A kind of motor.");
+registered!(Placing, at, "A kind of placement. The heading of a robot is drawn uniformly after its place.");

@@ -143,7 +143,13 @@ impl Body for JointedEpisode {
 
     fn in_scene(&self, _: usize, call: &mut dyn FnMut(&PartScene<'_>)) {
         let source = Source::default();
-        call(&PartScene::new(&PartOfSpatial { scene: &self.setup.scene, wiring: None, path: "", source: &source }));
+        call(&PartScene::new(&PartOfSpatial {
+            scene: &self.setup.scene,
+            wiring: None,
+            rule: None,
+            path: "",
+            source: &source,
+        }));
     }
 }
 

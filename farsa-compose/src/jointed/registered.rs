@@ -10,7 +10,7 @@ use farsa_lab::Error;
 
 use crate::check::completed::builder;
 use crate::check::source::Source;
-use crate::document::{MotorKind, SensorKind};
+use crate::document::{MotorKind, Placing, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::scene::Scene;
 use crate::part::PartScene;
@@ -20,6 +20,7 @@ use crate::part::named_point::NamedPoint;
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
 use crate::part::scene::{Area, JointAbout, ON_WHEELS, Surroundings};
 use crate::part::wiring::Wiring;
+use crate::parts::rule_of::RuleOf;
 use crate::sensors::target_position::TargetSensor;
 
 /// A registered sensor.
@@ -77,6 +78,8 @@ pub(crate) struct PartOfSpatial<'s> {
     pub(crate) scene: &'s Scene,
     /// Actuators of motors, while motors are built.
     pub(crate) wiring: Option<&'s RefCell<Wiring>>,
+    /// Rule of a placement.
+    pub(crate) rule: Option<RuleOf<'s>>,
     /// Path of the part in the document.
     pub(crate) path: &'s str,
     pub(crate) source: &'s Source,
@@ -164,6 +167,20 @@ impl Surroundings for PartOfSpatial<'_> {
 
     fn has_food(&self) -> bool {
         false
+    }
+
+    fn placed_before(&self, name: &str, key: &str) -> Result<BodyId, Error> {
+        Err(self.error_at(key, format!("`{name}` has to be placed before")))
+    }
+
+    fn start_point(&self, at: &[f64], key: &str) -> Result<[f64; 3], Error> {
+        let why = || self.error_at(key, format!("has {} values where 3 are wanted: x, y and z", at.len()));
+        at.try_into().map_err(|_| why())
+    }
+
+    fn earlier_choice(&self, name: &str, points: usize) -> Result<usize, Error> {
+        let rule = self.rule.ok_or_else(|| self.error("is no placement".into()))?;
+        rule.earlier_choice(name, points, self.source)
     }
 
     fn shows(&self) -> bool {
@@ -267,12 +284,17 @@ pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result
 }
 
 /// Builds a registered placement in a scene.
-pub(crate) fn start(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialStart>, Error> {
+pub(crate) fn start(given: &Placing, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialStart>, Error> {
+    let Placing { at: kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
-    let build = builder((kind, path, source), ON_WHEELS, |build| match build {
-        Build::Start((_, build)) => Some(*build),
-        _ => None,
-    });
+    let build = builder(
+        (kind, &format!("{path}/at"), source),
+        "is for robots on wheels; next to one with joints it is `in-box` or `fixed`",
+        |build| match build {
+            Build::Start((_, build), _) => Some(*build),
+            _ => None,
+        },
+    );
     let build = build?;
     build(keys, &PartScene::new(&scene)).map_err(|error| source.at(path, error))
 }

@@ -8,6 +8,7 @@ use farsa_num::Stream;
 use farsa_physics::articulated::{Lane, World};
 
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
+use crate::part::{Spot, Start};
 
 /// A world of bodies with joints, in space.
 pub(crate) trait SpatialWorld:
@@ -29,8 +30,10 @@ pub(crate) trait SpatialWorld:
     fn step_term(&self, term: &mut dyn SpatialTerm);
     /// Computes a registered term.
     fn value(&self, term: &dyn SpatialTerm) -> f64;
+    /// Draws the position of a joint by a registered placement.
+    fn draw_position(&self, start: &dyn SpatialStart, stream: &mut Stream) -> Option<f32>;
     /// Draws a pose by a registered placement.
-    fn draw(&self, start: &dyn SpatialStart, number: usize, stream: &mut Stream) -> Option<Pose>;
+    fn draw(&self, start: &dyn SpatialStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose>;
 }
 
 /// Implements the abilities for registered parts.
@@ -51,8 +54,11 @@ macro_rules! registered_parts {
         fn value(&self, term: &dyn SpatialTerm) -> f64 {
             term.value(self)
         }
-        fn draw(&self, start: &dyn SpatialStart, number: usize, stream: &mut Stream) -> Option<Pose> {
-            start.pose(self, number, stream)
+        fn draw_position(&self, start: &dyn SpatialStart, stream: &mut Stream) -> Option<f32> {
+            Start::<Self>::position(start, stream)
+        }
+        fn draw(&self, start: &dyn SpatialStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose> {
+            start.pose(self, spot, stream)
         }
     };
 }

@@ -1,19 +1,20 @@
 //! Initial placements of joints and things.
 
+use farsa_body::Twist;
 use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robot::JointKind;
-use farsa_body::{Pose, Twist};
 use farsa_lab::Error;
-use farsa_num::{Scalar, Stream, sin_cos};
+use farsa_num::Stream;
 
 use crate::check::source::Source;
-use crate::document::{Document, Placing};
+use crate::document::Document;
 use crate::jointed::SpatialWorld;
 use crate::jointed::registered::{self, PartOfSpatial};
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::things::What;
 use crate::part::object::SpatialStart;
-use crate::parts::choice::Choice;
+use crate::part::spot::Spot;
+use crate::parts::rule_of::RuleOf;
 
 /// A placement with its part.
 #[derive(Clone, Debug)]
@@ -21,7 +22,7 @@ struct Rule {
     what: Placed,
     /// Greatest distance of the surface from the center [m].
     reach: f64,
-    how: How,
+    start: Box<dyn SpatialStart>,
 }
 
 /// A part that a trial places.
@@ -30,15 +31,6 @@ enum Placed {
     Joint(JointId),
     Body(BodyId),
     Marker(usize),
-}
-
-#[derive(Clone, Debug)]
-enum How {
-    Within { low: [f64; 3], high: [f64; 3], apart: f64 },
-    OneOf(Choice<3>),
-    Turned { low: f64, high: f64 },
-    Fixed(Pose),
-    Registered(Box<dyn SpatialStart>),
 }
 
 /// Placements of a trial.
@@ -53,9 +45,6 @@ pub(crate) struct Starting {
     chosen: Vec<usize>,
 }
 
-/// Most attempts to find a place.
-const TRIES: u32 = 1000;
-
 impl Starting {
     /// Reads the placements of a document.
     pub(crate) fn new(document: &Document, scene: &Scene, source: &Source) -> Result<Self, Error> {
@@ -63,11 +52,19 @@ impl Starting {
         for (index, start) in document.start.iter().enumerate() {
             let path = format!("/start/{index}");
             let (what, reach) = named(&start.place, scene, &path, source)?;
-            let how = how(document, index, what, scene, &path, source)?;
+            let is_joint = matches!(what, Placed::Joint(_));
+            let is_of_joints = source.registry.start(&start.how).is_some_and(|start| start.is_of_joints());
+            if is_of_joints != is_joint {
+                let why = if is_joint { "is for things; a joint is `turned`" } else { "is for joints; this is none" };
+                return Err(source.wrong(&format!("{path}/at"), why));
+            }
+            let rule = Some(RuleOf { document, number: index, placed: &[] });
+            let part = PartOfSpatial { scene, wiring: None, rule, path: &path, source };
+            let made = registered::start(&start.how, part)?;
             if rules.iter().any(|other| other.what == what) {
                 return Err(source.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));
             }
-            rules.push(Rule { what, reach, how });
+            rules.push(Rule { what, reach, start: made });
         }
         for (index, (object, thing)) in document.objects.iter().zip(&scene.things).enumerate() {
             let what = match thing.what {
@@ -99,34 +96,33 @@ impl Starting {
         world.clear();
         markers.copy_from_slice(resting);
         before.clear();
-        for (number, Rule { what, reach, how }) in rules.iter().enumerate() {
-            // Only positions placed earlier in this loop limit a draw. The world is finished once, after all of them.
-            let pose = match how {
-                How::Turned { low, high } => {
-                    if let Placed::Joint(joint) = what {
-                        // A joint takes no room, so no later rule keeps a distance from it.
-                        world.place_joint(*joint, stream.range(*low as f32, *high as f32), 0.0);
-                    }
-                    continue;
-                }
-                How::Fixed(pose) => *pose,
-                How::Registered(start) => {
-                    // A placement may depend on everything placed earlier.
-                    world.finish_placement();
-                    let Some(pose) = world.draw(&**start, 0, stream) else { return false };
-                    pose
-                }
-                How::OneOf(choice) => {
-                    let taken = |point: &[f32; 3]| before.iter().any(|(other, _)| other == point);
-                    let Some(point) = choice.take(chosen, taken, |count| stream.below(count)) else { return false };
-                    chosen[number] = point;
-                    Pose::at(choice.points[point])
-                }
-                How::Within { low, high, apart } => {
-                    let Some(at) = within(low, high, *reach + *apart, before, stream) else { return false };
-                    Pose::at(at)
-                }
+        for (number, Rule { what, reach, start }) in rules.iter().enumerate() {
+            if let Placed::Joint(joint) = what {
+                let Some(position) = world.draw_position(&**start, stream) else { return false };
+                // A joint takes no room, so no later rule keeps a distance from it.
+                world.place_joint(*joint, position, 0.0);
+                continue;
+            }
+            // A placement may depend on everything placed earlier.
+            world.finish_placement();
+            let mut spot = Spot {
+                number: 0,
+                radius: *reach,
+                edge: *reach,
+                solid: true,
+                turns: false,
+                size: [0.0; 2],
+                others: &mut [],
+                areas: &[],
+                earlier: before,
+                chosen,
+                choice: None,
+                lacks: None,
             };
+            let Some(pose) = world.draw(&**start, &mut spot, stream) else { return false };
+            if let Some(choice) = spot.choice {
+                chosen[number] = choice;
+            }
             match what {
                 Placed::Body(body) => world.place_body(*body, pose, Twist::default()),
                 Placed::Marker(number) => markers[*number] = pose.position,
@@ -137,25 +133,6 @@ impl Starting {
         world.finish_placement();
         true
     }
-}
-
-/// Draws a place in a box at the given distance from earlier ones.
-fn within(
-    low: &[f64; 3],
-    high: &[f64; 3],
-    far: f64,
-    before: &[([f32; 3], f64)],
-    stream: &mut Stream,
-) -> Option<[f32; 3]> {
-    let mut tries = 0..TRIES;
-    tries.find_map(|_| {
-        let at = [0, 1, 2].map(|k| stream.range(low[k] as f32, high[k] as f32));
-        let clear = |(other, reach): &([f32; 3], f64)| {
-            let [x, y, z] = [0, 1, 2].map(|k| f64::from(at[k] - other[k]));
-            Scalar::sqrt(x * x + y * y + z * z) >= reach + far
-        };
-        before.iter().all(clear).then_some(at)
-    })
 }
 
 /// Returns a named part and its reach.
@@ -179,61 +156,4 @@ fn named(name: &String, scene: &Scene, path: &str, source: &Source) -> Result<(P
     let names = names.chain(scene.things.iter().map(|thing| thing.name.as_str()));
     let joint = joint.ok_or_else(|| Error::unknown(&source.of(&path), "joint or object", name, names))?;
     Ok((Placed::Joint(joint), 0.0))
-}
-
-/// Reads the placement of a rule.
-fn how(
-    document: &Document,
-    rule: usize,
-    what: Placed,
-    scene: &Scene,
-    path: &str,
-    source: &Source,
-) -> Result<How, Error> {
-    let joint = matches!(what, Placed::Joint(_));
-    match &document.start[rule].how {
-        Placing::Turned { low, high } if joint => {
-            if low > high {
-                return Err(source.wrong(path, format!("from {low} to {high} runs backwards")));
-            }
-            Ok(How::Turned { low: *low, high: *high })
-        }
-        Placing::Turned { .. } => Err(source.wrong(&format!("{path}/at"), "is for joints; this is none")),
-        _ if joint => Err(source.wrong(&format!("{path}/at"), "is for things; a joint is `turned`")),
-        Placing::Registered { at, keys } => {
-            Ok(How::Registered(registered::start(at, keys, PartOfSpatial { scene, wiring: None, path, source })?))
-        }
-        Placing::InBox { low, high, apart } => {
-            if (0..3).any(|k| low[k] > high[k]) {
-                return Err(source.wrong(path, "has a `low` above its `high`"));
-            }
-            Ok(How::Within { low: *low, high: *high, apart: *apart })
-        }
-        Placing::OneOf { points, like } => {
-            let point = |(index, point): (usize, &Vec<f64>)| {
-                let why = || format!("has {} values where 3 are wanted: x, y and z", point.len());
-                let at = <[f64; 3]>::try_from(point.as_slice());
-                at.map(|point| point.map(|x| x as f32))
-                    .map_err(|_| source.wrong(&format!("{path}/points/{index}"), why()))
-            };
-            let points = points.iter().enumerate().map(point).collect::<Result<_, _>>()?;
-            Ok(How::OneOf(Choice::new(points, like.as_ref(), document, rule, source)?))
-        }
-        Placing::Fixed { drawn_heading: true, .. } => {
-            Err(source.wrong(&format!("{path}/drawn_heading"), "is for robots on wheels"))
-        }
-        Placing::Fixed { point, heading, .. } => {
-            let Ok(point) = <[f64; 3]>::try_from(point.as_slice()) else {
-                return Err(source.wrong(&format!("{path}/point"), "has 2 values where 3 are wanted: x, y and z"));
-            };
-            // A turn by h about z is the quaternion (0, 0, sin(h/2), cos(h/2)). The document has degrees.
-            let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
-            let pose = Pose { position: point, rotation: [0.0, 0.0, sine, cosine] };
-            Ok(How::Fixed(pose.cast()))
-        }
-        Placing::Anywhere { .. } | Placing::Near { .. } | Placing::Around { .. } => Err(source.wrong(
-            &format!("{path}/at"),
-            "is for robots on wheels; next to one with joints it is `in-box` or `fixed`",
-        )),
-    }
 }

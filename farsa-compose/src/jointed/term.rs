@@ -296,9 +296,11 @@ fn measure(
         RewardKind::Steps {} => Measure::Steps,
         RewardKind::Step {} => Measure::Step,
         RewardKind::Time {} => Measure::Time,
-        RewardKind::Registered { kind, keys } => {
-            Measure::Registered(registered::term(kind, keys, PartOfSpatial { scene, wiring: None, path, source })?)
-        }
+        RewardKind::Registered { kind, keys } => Measure::Registered(registered::term(
+            kind,
+            keys,
+            PartOfSpatial { scene, wiring: None, rule: None, path, source },
+        )?),
         _ => return Err(source.wrong(path, ON_WHEELS)),
     })
 }

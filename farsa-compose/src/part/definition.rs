@@ -17,6 +17,7 @@ use crate::part::object::{
 };
 use crate::part::scene::PartScene;
 use crate::part::sensor::AnySensor;
+use crate::part::start::AnyStart;
 use crate::part::wrapper::AnyWrapper;
 
 /// Keys of a part, as the file has them.
@@ -51,7 +52,7 @@ pub(crate) enum Build {
     Sensor(InWorlds<dyn PlanarSensor, dyn SpatialSensor>, Reading<dyn AnySensor>),
     Motor(InWorlds<dyn PlanarMotor, dyn SpatialMotor>, Reading<dyn AnyMotor>),
     Term(InWorlds<dyn PlanarTerm, dyn SpatialTerm>),
-    Start(InWorlds<dyn PlanarStart, dyn SpatialStart>),
+    Start(InWorlds<dyn PlanarStart, dyn SpatialStart>, Reading<dyn AnyStart>),
     Wrapper(Reading<dyn AnyWrapper>),
     Network(Wiring),
     Thing(Composing),

@@ -65,6 +65,8 @@ pub(crate) mod registration;
 pub(crate) mod scene;
 /// Sensors.
 pub(crate) mod sensor;
+/// Bodies to be placed.
+pub(crate) mod spot;
 /// Placements.
 pub(crate) mod start;
 /// Terms of the fitness.
@@ -88,6 +90,7 @@ pub use registration::{
 };
 pub use scene::{Area, PartScene};
 pub use sensor::{Quantity, SensorPart};
+pub use spot::Spot;
 pub use start::{Start, StartPart};
 pub use term::{Term, TermPart};
 pub use thing::ThingPart;

@@ -14,7 +14,7 @@ use crate::part::object::{
 };
 use crate::part::scene::PartScene;
 use crate::part::sensor::{AnySensor, SensorPart};
-use crate::part::start::StartPart;
+use crate::part::start::{AnyStart, StartPart};
 use crate::part::term::TermPart;
 use crate::part::thing::ThingPart;
 use crate::part::wrapper::{AnyWrapper, WrapperPart};
@@ -37,6 +37,10 @@ building!(planar_start_of, StartPart, Start, start, PlanarStart);
 building!(spatial_start_of, StartPart, Start, start, SpatialStart);
 
 fn any_sensor<P: SensorPart>(given: &Given) -> Result<Box<dyn AnySensor>, Error> {
+    Ok(Box::new(keys::<P>(given)?))
+}
+
+fn any_start<P: StartPart>(given: &Given) -> Result<Box<dyn AnyStart>, Error> {
     Ok(Box::new(keys::<P>(given)?))
 }
 
@@ -106,17 +110,17 @@ pub fn start<P>(name: &'static str) -> Part
 where
     P: StartPart<Start: PlanarStart + SpatialStart>,
 {
-    Definition::part::<P>(name, Build::Start((Some(planar_start_of::<P>), Some(spatial_start_of::<P>))))
+    Definition::part::<P>(name, Build::Start((Some(planar_start_of::<P>), Some(spatial_start_of::<P>)), any_start::<P>))
 }
 
 /// Registers a kind of placement for robots on wheels under a name.
 pub fn planar_start<P: StartPart<Start: PlanarStart>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Start((Some(planar_start_of::<P>), None)))
+    Definition::part::<P>(name, Build::Start((Some(planar_start_of::<P>), None), any_start::<P>))
 }
 
 /// Registers a kind of placement for robots with joints under a name.
 pub fn spatial_start<P: StartPart<Start: SpatialStart>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Start((None, Some(spatial_start_of::<P>))))
+    Definition::part::<P>(name, Build::Start((None, Some(spatial_start_of::<P>)), any_start::<P>))
 }
 
 /// Registers a kind of wrapper under a name.

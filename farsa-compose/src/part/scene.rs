@@ -51,6 +51,12 @@ pub(crate) trait Surroundings {
     fn files(&self) -> Option<&Files<'_>>;
     /// Returns true with the section `foraging`.
     fn has_food(&self) -> bool;
+    /// Returns the body of a thing that earlier rules placed, or that stands. `key` names it.
+    fn placed_before(&self, name: &str, key: &str) -> Result<BodyId, Error>;
+    /// Reads a point for the rule's thing or robot. In a plane, its height is 0.
+    fn start_point(&self, at: &[f64], key: &str) -> Result<[f64; 3], Error>;
+    /// Returns the number of an earlier rule with a choice among this many points.
+    fn earlier_choice(&self, name: &str, points: usize) -> Result<usize, Error>;
     /// Returns true for an engine in which cameras with sectors see.
     fn shows(&self) -> bool;
     /// Returns a body of the robot, or a frame of its file with the pose in that body. `key` names it.

@@ -6,8 +6,6 @@ pub(crate) mod agents;
 pub(crate) mod behaviour;
 /// Networks of clusters and links.
 pub(crate) mod blocks;
-/// Choices among points. A choice may follow an earlier one.
-pub(crate) mod choice;
 /// Conditions that are formulas.
 pub(crate) mod conditions;
 /// Warning about a fitness that is the same for all individuals.
@@ -40,6 +38,8 @@ pub(crate) mod noise_streams;
 pub(crate) mod part;
 /// Functions that drive robots instead of networks.
 pub(crate) mod reflex;
+/// The rule of a placement.
+pub(crate) mod rule_of;
 /// Parameters of a search, and those of the network.
 pub(crate) mod searched;
 /// Checks of sizes by the limits of a reader.

@@ -6,7 +6,7 @@ use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 use farsa_body::robots::MobileRobot;
 use farsa_compose::document::{Object, ObjectKind};
 use farsa_compose::part::{
-    self, Filter, MotorPart, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Start, StartPart, Term,
+    self, Filter, MotorPart, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot, Start, StartPart, Term,
     TermPart, ThingPart, WrapperPart,
 };
 use farsa_lab::advanced::Part;
@@ -280,7 +280,7 @@ pub(crate) struct OnLine {
 }
 
 impl<W> Start<W> for OnLine {
-    fn pose(&self, _: &W, _: usize, stream: &mut Stream) -> Option<Pose> {
+    fn pose(&self, _: &W, _: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose> {
         let share = stream.range_f64(0.0, 1.0);
         Some(Pose::at([0, 1, 2].map(|k| (self.from[k] + share * (self.to[k] - self.from[k])) as f32)))
     }
