@@ -12,10 +12,11 @@ use crate::robots::robots;
 use crate::sensors::sensors;
 use crate::starts::starts;
 use crate::terms::terms;
+use crate::things::things;
 use crate::wrappers::wrappers;
 
 fn built_in() -> Vec<Part> {
-    [robots(), sensors(), motors(), wrappers(), terms(), starts()].into_iter().flatten().collect()
+    [robots(), sensors(), motors(), wrappers(), terms(), starts(), things()].into_iter().flatten().collect()
 }
 
 /// Registry of the format, whose schemas are built once because each takes a megabyte.

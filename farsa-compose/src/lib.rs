@@ -20,6 +20,7 @@ mod robots;
 mod sensors;
 mod starts;
 mod terms;
+mod things;
 mod wrappers;
 
 pub use built_in::schema;

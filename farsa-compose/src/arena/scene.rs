@@ -6,7 +6,7 @@ use farsa_lab::Error;
 use farsa_physics::arena::{Area, Arena, CollisionRule, Cylinder, Wall};
 
 use crate::check::source::Source;
-use crate::document::{Collisions, Document, Engine, Object, ObjectKind, Robot};
+use crate::document::{Collisions, Document, Engine, Object, Robot, Shape};
 use crate::part;
 use crate::part::definition::Maker;
 use crate::parts::groups::Groups;
@@ -128,11 +128,11 @@ impl Scene {
             if of_robots || built.iter().any(|(name, _)| *name == object.name) {
                 return Err(source.wrong(&path, format!("`{}` names something else already", object.name)));
             }
-            let reach = match &object.kind {
-                ObjectKind::Cylinder { radius, .. } | ObjectKind::Disc { radius, .. } => *radius,
-                ObjectKind::Wall { size, .. } | ObjectKind::Rectangle { size, .. } => size[0].max(size[1]),
-                ObjectKind::Block { size, .. } => size[0].max(size[1]),
-                ObjectKind::Ball { .. } | ObjectKind::Marker { .. } | ObjectKind::Registered { .. } => {
+            let reach = match &object.shape {
+                Some(Shape::Cylinder { radius, .. } | Shape::Disc { radius, .. }) => *radius,
+                Some(Shape::Wall { size, .. } | Shape::Rectangle { size, .. }) => size[0].max(size[1]),
+                Some(Shape::Block { size, .. }) => size[0].max(size[1]),
+                Some(Shape::Ball { .. } | Shape::Marker { .. }) | None => {
                     let why = "is for robots with joints; next to one on wheels are cylinders, discs and rectangles";
                     return Err(source.wrong(&format!("/objects/{index}"), why));
                 }
@@ -142,10 +142,10 @@ impl Scene {
             if let Some(at) = at.filter(|_| !object.shines()) {
                 within_walls(document, at, &format!("/objects/{index}/at"), source)?;
             }
-            if object.at.is_none() && matches!(object.kind, ObjectKind::Wall { .. }) {
+            if object.at.is_none() && matches!(object.shape, Some(Shape::Wall { .. })) {
                 return Err(source.wrong(&format!("/objects/{index}"), "lacks the key `at`: no trial places walls"));
             }
-            if matches!(object.kind, ObjectKind::Block { .. }) && world.engine == Engine::Arena {
+            if matches!(object.shape, Some(Shape::Block { .. })) && world.engine == Engine::Arena {
                 let why = "is a block, which nothing pushes in the engine `arena`; `rapier` is the one for it";
                 return Err(source.wrong(&format!("/objects/{index}"), why));
             }
@@ -274,27 +274,27 @@ pub(crate) const ROBOT: &str = "robot";
 
 fn add(arena: &mut Arena, blocks: &mut Vec<Block>, object: &Object, at: [f64; 2]) -> Thing {
     let (heading, body) = (object.heading.to_radians(), BodyId(0));
-    match object.kind {
-        ObjectKind::Cylinder { radius, height, color, lamp } => {
+    match object.shape {
+        Some(Shape::Cylinder { radius, height, color, lamp }) => {
             arena.add_cylinder(Cylinder { centre: at, radius, height, color, lamp });
             Thing::Cylinder { body, radius }
         }
-        ObjectKind::Wall { size, height, color } => {
+        Some(Shape::Wall { size, height, color }) => {
             arena.add_wall(Wall { height, color, ..Wall::cuboid(at, size, heading) });
             Thing::Wall
         }
-        ObjectKind::Block { size, mass, friction, color } => {
+        Some(Shape::Block { size, mass, friction, color }) => {
             blocks.push(Block { centre: at, heading, size, mass, friction, color });
             // Half the diagonal is the greatest distance from the center at any heading.
             Thing::Block { body, reach: 0.5 * farsa_num::Scalar::sqrt(size[0] * size[0] + size[1] * size[1]) }
         }
         // Rejected by `Scene::new`.
-        ObjectKind::Ball { .. } | ObjectKind::Marker { .. } | ObjectKind::Registered { .. } => Thing::Wall,
-        ObjectKind::Disc { radius, color } => {
+        Some(Shape::Ball { .. } | Shape::Marker { .. }) | None => Thing::Wall,
+        Some(Shape::Disc { radius, color }) => {
             arena.add_area(Area { heading, ..Area::circle(at, radius, color) });
             Thing::Area(part::Area { body, half: [radius; 2], disc: true })
         }
-        ObjectKind::Rectangle { size, color } => {
+        Some(Shape::Rectangle { size, color }) => {
             arena.add_area(Area::rectangle(at, size, heading, color));
             Thing::Area(part::Area { body, half: size.map(|x| 0.5 * x), disc: false })
         }

@@ -63,9 +63,7 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
         completed("network", kind, keys, "/network")?;
     }
     for (index, object) in document.objects.iter_mut().enumerate() {
-        if let ObjectKind::Registered { kind, keys } = &mut object.kind {
-            completed("thing", kind, keys, &format!("/objects/{index}"))?;
-        }
+        completed("thing", &object.kind.kind, &mut object.kind.keys, &format!("/objects/{index}"))?;
     }
     let groups = document.robots.iter_mut().map(|group| &mut group.robot);
     for robot in document.robot.iter_mut().chain(groups) {
@@ -74,18 +72,15 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
     Ok(())
 }
 
-/// Replaces registered things by those of which they consist.
+/// Gives things their shapes, and replaces those that consist of several.
 ///
 /// # Errors
 /// [`Error::Setting`] for a thing that cannot be built.
 pub(crate) fn expand(document: &mut Document, source: &Source) -> Result<(), Error> {
-    if !document.objects.iter().any(|object| matches!(object.kind, ObjectKind::Registered { .. })) {
-        return Ok(());
-    }
     // The first parts keep the numbers of the file, so messages about them have their places.
     let mut further = Vec::new();
     for (index, object) in document.objects.iter_mut().enumerate() {
-        let ObjectKind::Registered { kind, keys } = &object.kind else { continue };
+        let ObjectKind { kind, keys } = &object.kind;
         let path = format!("/objects/{index}");
         let build =
             source.registry.find(kind, |build| if let Build::Thing(build) = build { Some(build) } else { None });
@@ -94,8 +89,8 @@ pub(crate) fn expand(document: &mut Document, source: &Source) -> Result<(), Err
         if things.is_empty() {
             return Err(source.wrong(&path, format!("`{kind}` consists of no things")));
         }
-        if things.iter().any(|thing| matches!(thing.kind, ObjectKind::Registered { .. })) {
-            return Err(source.wrong(&path, format!("`{kind}` consists of registered things")));
+        if things.iter().any(|thing| thing.shape.is_none()) {
+            return Err(source.wrong(&path, format!("`{kind}` consists of things without a shape")));
         }
         further.extend(things.split_off(1));
         *object = things.remove(0);

@@ -42,11 +42,11 @@ pub use foraging::Foraging;
 pub use learning::{Learning, LossName};
 pub use motor::Motor;
 pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
-pub use registered::{MotorKind, Placing, SensorKind, Wrapper};
+pub use registered::{MotorKind, ObjectKind, Placing, SensorKind, Wrapper};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
 pub use robot::{Robot, RobotGroup, RobotKind, Team};
 pub use sensor::Sensor;
-pub use world::{Collisions, Engine, Object, ObjectKind, World};
+pub use world::{Collisions, Engine, Object, Shape, World};
 
 /// An experiment: robots in a world, their sensors, motors and network, the course of a trial and its reward.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

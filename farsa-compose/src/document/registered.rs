@@ -33,4 +33,5 @@ macro_rules! registered {
 registered!(Wrapper, kind, "A change of values on their way from a sensor or to a motor.");
 registered!(SensorKind, kind, "A kind of sensor.");
 registered!(MotorKind, kind, "A kind of motor.");
+registered!(ObjectKind, kind, "A kind of thing.");
 registered!(Placing, at, "A kind of placement. The heading of a robot is drawn uniformly after its place.");

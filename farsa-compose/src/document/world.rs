@@ -2,8 +2,8 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 
+use crate::document::registered::ObjectKind;
 use crate::name::NAME;
 
 /// A plane, usually with walls around it, or space, usually with a floor.
@@ -112,138 +112,83 @@ pub struct Object {
     /// The kind of thing.
     #[serde(flatten)]
     pub kind: ObjectKind,
+    /// Shape that the kind gives it.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub shape: Option<Shape>,
 }
 
 impl Object {
     /// Returns true for lamps, which are visible beyond walls.
     pub(crate) fn shines(&self) -> bool {
-        matches!(self.kind, ObjectKind::Cylinder { lamp, .. } if lamp > 0.0)
+        matches!(self.shape, Some(Shape::Cylinder { lamp, .. }) if lamp > 0.0)
     }
 }
 
-/// The kinds of things.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum ObjectKind {
-    /// An upright cylinder, optionally a lamp.
+/// Shapes of which things consist.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// An upright cylinder, which is a lamp with a light intensity above 0.
     Cylinder {
-        /// Radius [m].
-        #[schemars(range(min = 0.0001, max = 100.0))]
+        /// Radius \[m\].
         radius: f64,
-        /// Height [m].
-        #[serde(default = "height")]
-        #[schemars(range(min = 0.0001, max = 100.0))]
+        /// Height \[m\].
         height: f64,
         /// Red, green and blue.
-        #[serde(default = "grey")]
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
-        /// Light intensity. 0 is no lamp.
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 1e6))]
+        /// Light intensity.
         lamp: f64,
     },
     /// A fixed box.
     Wall {
-        /// Length and thickness [m].
-        #[schemars(inner(range(min = 0.0001, max = 1000.0)))]
+        /// Length and thickness \[m\].
         size: [f64; 2],
-        /// Height [m].
-        #[serde(default = "height")]
-        #[schemars(range(min = 0.0001, max = 100.0))]
+        /// Height \[m\].
         height: f64,
         /// Red, green and blue.
-        #[serde(default = "grey")]
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A movable box, not in the engine `arena`.
+    /// A movable box.
     Block {
-        /// Length, breadth and height [m].
-        #[schemars(inner(range(min = 0.001, max = 100.0)))]
+        /// Length, breadth and height \[m\].
         size: [f64; 3],
-        /// Mass [kg].
-        #[schemars(range(min = 0.0001, max = 10000.0))]
+        /// Mass \[kg\].
         mass: f64,
-        /// Coefficient of friction with the ground and with smoother things.
-        #[serde(default = "half")]
-        #[schemars(range(min = 0.0, max = 10.0))]
+        /// Coefficient of friction.
         friction: f64,
         /// Red, green and blue.
-        #[serde(default = "grey")]
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A movable ball, for experiments with joints.
+    /// A movable ball.
     Ball {
-        /// Radius [m].
-        #[schemars(range(min = 0.0001, max = 100.0))]
+        /// Radius \[m\].
         radius: f64,
-        /// Mass [kg].
-        #[schemars(range(min = 0.0001, max = 10000.0))]
+        /// Mass \[kg\].
         mass: f64,
-        /// Coefficient of friction with the floor and with other things.
-        #[serde(default = "half")]
-        #[schemars(range(min = 0.0, max = 10.0))]
+        /// Coefficient of friction.
         friction: f64,
         /// Red, green and blue.
-        #[serde(default = "grey")]
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A visible place without contacts, for experiments with joints.
+    /// A visible place without contacts.
     Marker {
-        /// Radius of the drawn ball [m].
-        #[serde(default = "small")]
-        #[schemars(range(min = 0.0001, max = 100.0))]
+        /// Radius of the drawn ball \[m\].
         radius: f64,
         /// Red, green and blue.
-        #[serde(default = "grey")]
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A disc of the ground with its own color.
+    /// A disc of the ground.
     Disc {
-        /// Radius [m].
-        #[schemars(range(min = 0.0001, max = 1000.0))]
+        /// Radius \[m\].
         radius: f64,
         /// Red, green and blue.
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A rectangle of the ground with its own color.
+    /// A rectangle of the ground.
     Rectangle {
-        /// Length along the heading, and breadth [m].
-        #[schemars(inner(range(min = 0.0001, max = 1000.0)))]
+        /// Length along the heading, and breadth \[m\].
         size: [f64; 2],
         /// Red, green and blue.
-        #[schemars(inner(range(min = 0.0, max = 1.0)))]
         color: [f64; 3],
     },
-    /// A thing of the user's program, with its keys.
-    #[serde(untagged)]
-    #[schemars(skip)]
-    Registered {
-        /// Registered name.
-        kind: String,
-        /// Keys.
-        #[serde(flatten)]
-        keys: Map<String, Value>,
-    },
-}
-
-fn half() -> f64 {
-    0.5
-}
-
-fn small() -> f64 {
-    0.02
-}
-
-fn height() -> f64 {
-    0.1
-}
-
-fn grey() -> [f64; 3] {
-    [0.5; 3]
 }

@@ -8,7 +8,7 @@ use farsa_num::{Scalar, sin_cos};
 use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
 
 use crate::check::source::Source;
-use crate::document::{Object, ObjectKind};
+use crate::document::{self, Object};
 
 /// A named thing.
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ impl Thing {
         drawn: &mut Vec<SceneObject>,
         (path, source): (&str, &Source),
     ) -> Result<Self, Error> {
-        let Object { name, at, heading, kind, .. } = object;
+        let Object { name, at, heading, shape, .. } = object;
         let (sine, cosine) = sin_cos(0.5 * heading.to_radians());
         // Without a height in the document, a thing rests on the plane z = 0.
         let pose = |height| Pose { position: in_space(at.as_deref(), height), rotation: [0.0, 0.0, sine, cosine] };
@@ -76,20 +76,20 @@ impl Thing {
             drawn.push(object.on_body(body).with_color(screen_color(color)));
             (What::Body(body), Some(collider))
         };
-        let (reach, friction, mass, (what, collider)) = match *kind {
-            ObjectKind::Ball { radius, mass, friction, color } => {
+        let (reach, friction, mass, (what, collider)) = match *shape {
+            Some(document::Shape::Ball { radius, mass, friction, color }) => {
                 let inertia = MassProperties::sphere(mass, radius);
                 let made = moving(Shape::Sphere { radius }, Geometry::Sphere { radius }, inertia, pose(radius), color);
                 (radius, friction, mass, made)
             }
-            ObjectKind::Block { size, mass, friction, color } => {
+            Some(document::Shape::Block { size, mass, friction, color }) => {
                 let half = size.map(|x| 0.5 * x);
                 let inertia = MassProperties::cuboid(mass, half);
                 let made = moving(Shape::Box { half }, Geometry::Box { half }, inertia, pose(half[2]), color);
                 // The corners of a box are its points farthest from the center.
                 (length(half), friction, mass, made)
             }
-            ObjectKind::Wall { size: [along, across], height, color } => {
+            Some(document::Shape::Wall { size: [along, across], height, color }) => {
                 let (half, pose) = ([0.5 * along, 0.5 * across, 0.5 * height], pose(0.5 * height));
                 let collider =
                     robot.add_collider(Collider::new(name, None, Shape::Box { half }, pose).with_color(color));
@@ -97,15 +97,14 @@ impl Thing {
                 drawn.push(object.with_color(screen_color(color)));
                 (length(half), 0.0, 0.0, (What::Wall, Some(collider)))
             }
-            ObjectKind::Marker { radius, color } => {
+            Some(document::Shape::Marker { radius, color }) => {
                 markers.push(Marker { name: name.clone(), radius, color, at: in_space(at.as_deref(), 0.0) });
                 (0.0, 0.0, 0.0, (What::Marker(markers.len() - 1), None))
             }
-            // Registered things were replaced by those of which they consist.
-            ObjectKind::Cylinder { .. }
-            | ObjectKind::Disc { .. }
-            | ObjectKind::Rectangle { .. }
-            | ObjectKind::Registered { .. } => {
+            Some(
+                document::Shape::Cylinder { .. } | document::Shape::Disc { .. } | document::Shape::Rectangle { .. },
+            )
+            | None => {
                 let why = "is for robots on wheels; next to one with joints are walls, blocks, balls and markers";
                 return Err(source.wrong(path, why));
             }

@@ -51,7 +51,7 @@ pub(crate) trait Surroundings {
     fn files(&self) -> Option<&Files<'_>>;
     /// Returns true with the section `foraging`.
     fn has_food(&self) -> bool;
-    /// Returns the body of a thing that earlier rules placed, or that stands. `key` names it.
+    /// Returns the body of a thing that earlier rules place, or that has a place. `key` names it.
     fn placed_before(&self, name: &str, key: &str) -> Result<BodyId, Error>;
     /// Reads a point for the rule's thing or robot. In a plane, its height is 0.
     fn start_point(&self, at: &[f64], key: &str) -> Result<[f64; 3], Error>;

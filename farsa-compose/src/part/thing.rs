@@ -5,7 +5,7 @@ use farsa_lab::Error;
 use crate::document::Object;
 use crate::part::keys::Keys;
 
-/// A custom kind of thing, composed from things of the format. Its fields are the keys of the file.
+/// A custom kind of thing, composed of shapes. Its fields are the keys of the file.
 pub trait ThingPart: Keys {
     /// Lists the things that replace `object`, whose name, place, heading and number are those of the file.
     ///

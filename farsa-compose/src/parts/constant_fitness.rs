@@ -2,7 +2,7 @@
 
 use crate::check::registry::Registry;
 use crate::check::source::Source;
-use crate::document::{Document, MotorKind, ObjectKind, RewardKind, SensorKind};
+use crate::document::{Document, MotorKind, Object, RewardKind, SensorKind, Shape};
 use crate::formula::compile::is_constant as is_constant_formula;
 use crate::parts::groups::Groups;
 
@@ -68,7 +68,7 @@ pub(crate) fn pulls(document: &Document, registry: &Registry) -> bool {
 
 /// Checks if a thing stays at its place in a trial.
 fn is_fixed(name: &str, document: &Document, source: &Source) -> bool {
-    let movable = |kind: &ObjectKind| matches!(kind, ObjectKind::Block { .. } | ObjectKind::Ball { .. });
+    let movable = |object: &Object| matches!(object.shape, Some(Shape::Block { .. } | Shape::Ball { .. }));
     let object = document.objects.iter().find(|object| object.name == name);
-    object.is_some_and(|object| !movable(&object.kind) && !pulls(document, &source.registry))
+    object.is_some_and(|object| !movable(object) && !pulls(document, &source.registry))
 }

@@ -4,7 +4,7 @@ use farsa_body::Pose;
 use farsa_body::ports::{Actuated, ActuatorId, BodyId, Channels, Handles, Kinematics, Motor, Sensor};
 use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 use farsa_body::robots::MobileRobot;
-use farsa_compose::document::{Object, ObjectKind};
+use farsa_compose::document::{Object, Shape};
 use farsa_compose::part::{
     self, Filter, MotorPart, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot, Start, StartPart, Term,
     TermPart, ThingPart, WrapperPart,
@@ -307,7 +307,7 @@ impl ThingPart for Gate {
         let post = |name: String, sign: f64| Object {
             name,
             at: Some(vec![*x, y + sign * 0.5 * self.width]),
-            kind: ObjectKind::Cylinder { radius: 0.02, height: 0.1, color: [1.0, 0.0, 0.0], lamp: 0.0 },
+            shape: Some(Shape::Cylinder { radius: 0.02, height: 0.1, color: [1.0, 0.0, 0.0], lamp: 0.0 }),
             ..object.clone()
         };
         Ok(vec![post(object.name.clone(), 1.0), post(format!("{}-right", object.name), -1.0)])
