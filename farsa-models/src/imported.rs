@@ -5,6 +5,7 @@ use std::path::Path;
 use farsa_body::robot::Robot;
 
 use crate::context::Context;
+use crate::drawn::DrawnMesh;
 use crate::error::ReadError;
 use crate::files::ModelFiles;
 use crate::frame::Frame;
@@ -47,9 +48,11 @@ use crate::xml::tree::Tree;
 /// - *Ellipsoids* become capsules along their longest axis, with the radius of the second longest. As for cylinders,
 ///   masses are still computed from the true shapes.
 /// - *Meshes* (STL, OBJ) become a ball, a capsule or a box that contains all points, whichever has the least volume.
-///   Capsule and box use either the axes of the mesh or the principal axes of its surface. Meshes that cannot touch
-///   anything are left out. Masses of an MJCF's meshes follow its attribute `inertia`, and a primitive with a mesh has
+///   Capsule and box use either the axes of the mesh or the principal axes of its surface. Masses of an MJCF's meshes follow its attribute `inertia`, and a primitive with a mesh has
 ///   MuJoCo's sizes. Concave faces of an OBJ are covered once, whereas MuJoCo divides some of them wrongly.
+/// - *Drawn meshes* are in [`Imported::meshes`]. These are visuals with a mesh, geoms of a mesh that cannot touch anything
+///   and are in groups 0 to 2, and otherwise the meshes of colliders. They have at most 2000 triangles each and 20 000
+///   together.
 /// - *Visuals* of a URDF become [`Visual`](farsa_body::robot::Visual)s, except for links with a mesh. Geoms of an MJCF
 ///   also become visuals if they are in group 1 or 2 and cannot touch anything. Textures are ignored. Colors of other
 ///   geoms are listed as warnings, since cameras do not see visuals.
@@ -71,6 +74,9 @@ pub struct Imported {
     pub contacts: bool,
     /// Warnings about omitted and replaced parts, in alphabetical order.
     pub warnings: Vec<Warning>,
+    /// Meshes that views draw instead of colliders.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub meshes: Vec<DrawnMesh>,
 }
 
 impl Imported {
@@ -117,15 +123,15 @@ impl Imported {
         let root = tree.root();
         let parts = match root.tag() {
             "robot" => {
-                let (robot, frames) = urdf::read::read(&tree, &mut context)?;
-                ModelParts { robot, frames, gravity: None, contacts: true }
+                let (robot, frames, meshes) = urdf::read::read(&tree, &mut context)?;
+                ModelParts { robot, frames, gravity: None, contacts: true, meshes }
             }
             "mujoco" => mjcf::read::read(&tree, &mut context)?,
             _ => return Err(root.unknown("root of a model", root.tag(), ["robot", "mujoco"])),
         };
-        let ModelParts { robot, frames, gravity, contacts } = parts;
+        let ModelParts { robot, frames, gravity, contacts, meshes } = parts;
         robot.validate().map_err(|error| ReadError::Robot { file: file.into(), error })?;
-        Ok(Self { robot, frames, gravity, contacts, warnings: context.warnings.list() })
+        Ok(Self { robot, frames, gravity, contacts, warnings: context.warnings.list(), meshes })
     }
 
     /// Finds the frame of a link or body by its name in the file. If there is no such name, this returns `None`.

@@ -5,6 +5,8 @@
 mod bounds;
 /// Shared state of both readers.
 mod context;
+/// Meshes that views draw.
+mod drawn;
 /// Errors of reading.
 mod error;
 /// Files that a model names, which must be in its folders.
@@ -30,6 +32,7 @@ mod warnings;
 /// Checked XML, its names and numbers, and its writer.
 mod xml;
 
+pub use drawn::DrawnMesh;
 pub use error::{ReadError, SourceLocation};
 pub use frame::Frame;
 pub use imported::Imported;

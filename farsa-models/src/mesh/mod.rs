@@ -10,7 +10,11 @@ pub(crate) mod mass;
 pub(crate) mod polygon;
 /// Principal moments and axes of an inertia, and rotations from axes.
 pub(crate) mod principal_axes;
+/// Meshes with fewer triangles for drawing.
+pub(crate) mod simplified;
 /// Solids of a file, the shapes that replace them, and their masses.
 pub(crate) mod solid;
+/// Triangles of primitives.
+pub(crate) mod tessellated;
 /// Triangles from STL and OBJ, and what fits around them.
 pub(crate) mod triangles;

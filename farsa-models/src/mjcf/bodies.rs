@@ -7,11 +7,13 @@ use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segment, Visual};
 
 use crate::context::Context;
+use crate::drawn::DrawnMesh;
 use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
 use crate::mesh::solid::scaled;
 use crate::mjcf::classes::{Classed, Classes};
 use crate::mjcf::compiler::{Compiler, ROTATIONS};
+use crate::mjcf::drawn::{MeshGeom, drawn};
 use crate::mjcf::geoms::{CONDITIONAL, MeshAssets, check_geom, geom};
 use crate::mjcf::inertials::{body_mass, bounded};
 use crate::mjcf::items::{Item, items};
@@ -53,6 +55,8 @@ pub(crate) struct Bodies<'t, 'c> {
     /// Largest efforts of joints.
     pub(crate) efforts: Vec<(JointId, f64, SourceLocation)>,
     pub(crate) geoms: Vec<Geom<'t, 'c>>,
+    /// Geoms of meshes that may be drawn.
+    mesh_geoms: Vec<MeshGeom<'t>>,
     /// Geoms that pairs name.
     paired: BTreeSet<&'t str>,
     joint_number: usize,
@@ -108,6 +112,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             chains: Vec::new(),
             efforts: Vec::new(),
             geoms: Vec::new(),
+            mesh_geoms: Vec::new(),
             paired,
             joint_number: 0,
             geom_number: 0,
@@ -288,6 +293,11 @@ impl<'t, 'c> Bodies<'t, 'c> {
         }
     }
 
+    /// Reads the meshes that views draw.
+    pub(crate) fn drawn(&self, robot: &Robot, context: &mut Context<'_>) -> Vec<DrawnMesh> {
+        drawn(&self.mesh_geoms, robot, (&self.meshes, self.compiler), context)
+    }
+
     /// The segment of a body and where its frame is in it.
     fn frames_of(&self, body: usize) -> (Option<BodyId>, Pose<f64>) {
         match body.checked_sub(1) {
@@ -349,8 +359,16 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let touches = bits("contype")? | bits("conaffinity")?;
             let own = element.attribute("name").filter(|name| !name.is_empty());
             let named = own.is_some_and(|name| self.paired.contains(name));
+            let segment = self.list[body].segment;
+            let placed = |collider| {
+                let of_file = (&classed, self.compiler, self.model);
+                MeshGeom::new(of_file, (segment, &frame.compose(within)), collider)
+            };
             if classed.text("type") == Some("mesh") && !touches && !named {
-                context.warnings.add(element.place(), "geom of a mesh that touches nothing", SHOW);
+                match placed(None) {
+                    Some(geom) => self.mesh_geoms.push(geom),
+                    None => context.warnings.add(element.place(), "geom of a mesh that touches nothing", SHOW),
+                }
                 element.leave();
                 continue;
             }
@@ -363,7 +381,6 @@ impl<'t, 'c> Bodies<'t, 'c> {
                 context.warnings.add(element.place(), format!("geom {}", solid.label()), why);
             }
             let placement = frame.compose(&at).compose(&inner);
-            let segment = self.list[body].segment;
             // As models have it: what is drawn only touches nothing and is of group 1 or 2.
             let group = classed.number("group")?;
             if !touches && !named && (group == Some(1.0) || group == Some(2.0)) {
@@ -378,6 +395,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
             let name = own.map(str::to_owned);
             let name = name.unwrap_or_else(|| self.names.generate("geom", format!("geom{number}")));
             let collider = robot.add_collider(Collider::new(&name, segment, shape, placement));
+            self.mesh_geoms.extend(placed(Some(collider)));
             self.geoms.push(Geom { classed, body, collider });
         }
         Ok(())

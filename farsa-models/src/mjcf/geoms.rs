@@ -90,6 +90,20 @@ impl<'t, 'c> MeshAssets<'t, 'c> {
     }
 }
 
+impl<'t> MeshAssets<'t, '_> {
+    /// Reads the triangles of a mesh that a geom names, in the frame of its file.
+    pub(crate) fn read(
+        &self,
+        geom: Element<'t>,
+        name: &str,
+        compiler: &Compiler,
+        context: &mut Context<'_>,
+    ) -> Result<Mesh, ReadError> {
+        let unknown = || geom.unknown("mesh", name, self.all.keys().map(String::as_str));
+        self.all.get(name).ok_or_else(unknown)?.load(compiler, context)
+    }
+}
+
 impl MeshAsset<'_, '_> {
     /// Its points and triangles, scaled and placed.
     fn load(&self, compiler: &Compiler, context: &mut Context<'_>) -> Result<Mesh, ReadError> {

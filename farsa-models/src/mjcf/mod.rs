@@ -35,6 +35,9 @@ mod joints;
 /// Geoms and meshes.
 mod geoms;
 
+/// Meshes that views draw.
+mod drawn;
+
 /// Actuators.
 mod actuators;
 

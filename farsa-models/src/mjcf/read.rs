@@ -3,6 +3,7 @@
 use farsa_body::robot::{MassProperties, Robot};
 
 use crate::context::Context;
+use crate::drawn::DrawnMesh;
 use crate::error::{ReadError, SourceLocation};
 use crate::frame::Frame;
 use crate::mesh::solid::scaled;
@@ -22,6 +23,7 @@ pub(crate) struct ModelParts {
     pub(crate) frames: Vec<Frame>,
     pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) contacts: bool,
+    pub(crate) meshes: Vec<DrawnMesh>,
 }
 
 pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<ModelParts, ReadError> {
@@ -69,8 +71,9 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<ModelParts,
     }
     actuators(model, &mut robot, &compiler, &classes, &bodies, context)?;
     contacts(model, &mut robot, &classes, &bodies, &compiler.flags, context)?;
+    let meshes = bodies.drawn(&robot, context);
     // Defaults and meshes may be of no element that was read. Their attributes are all of the format.
     model.list_unread(&["default", "mesh", "name", "class", "childclass"], &mut context.warnings);
     let Flags { gravity, contact, .. } = compiler.flags;
-    Ok(ModelParts { robot, frames: bodies.frames, gravity, contacts: contact })
+    Ok(ModelParts { robot, frames: bodies.frames, gravity, contacts: contact, meshes })
 }

@@ -75,6 +75,23 @@ fn capsule(tube: &Solid, at: &Pose<f64>, a: &Placed, b: &Placed) -> Option<Shape
     pair.then_some(Shape::Capsule { radius, half_length })
 }
 
+/// Reads the file of a `mesh` element, whose triangles face inward if its scale reflects them.
+pub(super) fn mesh(shape: Element<'_>, context: &mut Context<'_>) -> Result<Mesh, ReadError> {
+    let name = shape.needed("filename")?;
+    let scale = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
+    let place = shape.place();
+    let read = Mesh::parse(name, &context.files.content(&place, &NamedFile { name, assets: "", folder: None })?);
+    let mesh = read.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?;
+    Ok(mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k])))
+}
+
+/// Reads the file of a `mesh` element, with triangles that face outward despite a reflection.
+pub(super) fn outward_mesh(shape: Element<'_>, context: &mut Context<'_>) -> Result<Mesh, ReadError> {
+    let [x, y, z] = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
+    let mesh = mesh(shape, context)?;
+    Ok(if x * y * z < 0.0 { mesh.turned_inside_out() } else { mesh })
+}
+
 /// Reads the shape in a `geometry` element, or `None` if it is left out.
 pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<Option<Solid>, ReadError> {
     let kinds = ["box", "cylinder", "capsule", "sphere", "mesh"];
@@ -124,16 +141,9 @@ pub(super) fn solid(geometry: Element<'_>, context: &mut Context<'_>) -> Result<
                 context.warnings.add(shape.place(), "mesh", "left out, as asked for");
                 return Ok(None);
             }
-            let scale = shape.array::<3>("scale")?.unwrap_or([1.0; 3]);
-            let place = shape.place();
-            let mesh =
-                Mesh::parse(name, &context.files.content(&place, &NamedFile { name, assets: "", folder: None })?);
-            let fit = mesh.and_then(|mesh| {
-                let scaled = mesh.map(|point| [0, 1, 2].map(|k| point[k] * scale[k]));
-                // Its link has the mass.
-                MeshFit::new(&scaled, MeshInertia::Legacy)
-            });
-            Solid::Mesh(fit.map_err(|why| ReadError::Mesh { place, path: name.into(), why })?)
+            // Its link has the mass.
+            let fit = MeshFit::new(&mesh(shape, context)?, MeshInertia::Legacy);
+            Solid::Mesh(fit.map_err(|why| ReadError::Mesh { place: shape.place(), path: name.into(), why })?)
         }
         other => return Err(shape.unknown("shape", other, kinds)),
     };

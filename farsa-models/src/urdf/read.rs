@@ -9,12 +9,13 @@ use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segme
 
 use crate::bounds::{ENDLESS, range_from_file};
 use crate::context::Context;
+use crate::drawn::{DrawnMesh, bounded};
 use crate::error::{ReadError, repeated};
 use crate::frame::Frame;
 use crate::repair::repair_masses;
 use crate::urdf::elements::{NOTED, check_children, check_processed};
 use crate::urdf::geometry::{Placed, joined, origin, solid};
-use crate::urdf::visuals::{colors, visuals};
+use crate::urdf::visuals::{MeshCollider, collision_meshes, colors, visuals};
 use crate::vector::norm;
 use crate::xml::tree::{Element, Tree};
 
@@ -30,7 +31,10 @@ struct Links<'t> {
     parents: Vec<Option<usize>>,
 }
 
-pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec<Frame>), ReadError> {
+/// Robot, frames and drawn meshes of a model.
+type Model = (Robot, Vec<Frame>, Vec<DrawnMesh>);
+
+pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<Model, ReadError> {
     let root = tree.root();
     root.check_open(&["name", "version"], &mut context.warnings)?;
     check_processed(root)?;
@@ -41,6 +45,7 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
     let mut robot = Robot::new(root.attribute("name").unwrap_or_default());
     let mut locations = Vec::new();
     let mut frames = Vec::new();
+    let mut looks = Vec::new();
     let mut bodies: Vec<Option<BodyId>> = vec![None; links.elements.len()];
     for index in order {
         let link = links.elements[index];
@@ -64,13 +69,21 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<(Robot, Vec
             }
         }
         frames.push(Frame { name: name.into(), body: bodies[index], placement: Pose::identity() });
-        collisions(&mut robot, bodies[index], link, context)?;
-        visuals(&mut robot, bodies[index], link, &colors, context);
+        let touching = collisions(&mut robot, bodies[index], link, context)?;
+        looks.push((bodies[index], link, touching));
     }
     names(&mut robot);
     let repair = context.options.repair;
     repair_masses(&mut robot, &locations, &repair, &mut context.warnings)?;
-    Ok((robot, frames))
+    // Meshes of visuals come last, so that their files leave the limits to those that the robot needs.
+    let looks = looks.iter().flat_map(|(body, link, touching)| {
+        let meshes = visuals(&mut robot, *body, *link, &colors, context);
+        let looks_otherwise = !meshes.is_empty() || robot.visuals.iter().any(|visual| visual.body == *body);
+        let touching = if looks_otherwise && body.is_some() { &[] } else { touching.as_slice() };
+        [meshes, collision_meshes(*body, touching, context)].concat()
+    });
+    let meshes = bounded(looks.collect());
+    Ok((robot, frames, meshes))
 }
 
 impl<'t> Links<'t> {
@@ -287,13 +300,15 @@ fn motor(robot: &mut Robot, body: BodyId, element: Option<Element<'_>>) -> Resul
     Ok(())
 }
 
-fn collisions(
+/// Adds the colliders of a link, and returns those of meshes.
+fn collisions<'t>(
     robot: &mut Robot,
     body: Option<BodyId>,
-    link: Element<'_>,
+    link: Element<'t>,
     context: &mut Context<'_>,
-) -> Result<(), ReadError> {
+) -> Result<Vec<MeshCollider<'t>>, ReadError> {
     let mut solids: Vec<Placed> = Vec::new();
+    let mut elements = Vec::new();
     for collision in link.all("collision") {
         collision.check_open(&["name"], &mut context.warnings)?;
         check_children(collision, &["origin", "geometry"], &NOTED, context)?;
@@ -302,12 +317,15 @@ fn collisions(
         if let Some(solid) = solid(geometry, context)? {
             let name = collision.attribute("name").unwrap_or_default().to_owned();
             solids.push((name, solid, placement, collision.place()));
+            elements.push(geometry.all("mesh").next());
         }
     }
+    let mut touching = Vec::new();
     for (first, shape, placement) in joined(&solids, "collision", context) {
-        robot.add_collider(Collider::new(&solids[first].0, body, shape, placement));
+        let collider = robot.add_collider(Collider::new(&solids[first].0, body, shape, placement));
+        touching.extend(elements[first].map(|element| MeshCollider { element, collider, placement: solids[first].2 }));
     }
-    Ok(())
+    Ok(touching)
 }
 
 /// Gives new names to colliders without a name, or with the name of another.

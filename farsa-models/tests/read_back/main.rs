@@ -5,6 +5,8 @@
 mod bounds;
 /// MuJoCo's classes of defaults.
 mod defaults;
+/// Meshes that views draw.
+mod drawn;
 /// Faults with their place and the nearest name, and MuJoCo's rules.
 mod faults;
 /// The files that a model names.
