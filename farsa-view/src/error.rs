@@ -22,6 +22,8 @@ pub enum Error {
     },
     /// A text is not valid JSON. This contains the reason.
     NotJson(String),
+    /// A mesh cannot be drawn. This contains the reason.
+    Mesh(String),
 }
 
 impl Error {
@@ -43,6 +45,7 @@ impl fmt::Display for Error {
                 }
             }
             Self::Size { size: [width, height], why } => write!(f, "a picture of {width} x {height}: {why}"),
+            Self::Mesh(why) => write!(f, "a mesh {why}"),
             Self::NotJson(why) => write!(f, "no JSON: {why}"),
         }
     }

@@ -17,6 +17,7 @@ import { pathToFileURL } from "node:url";
 import { elsewhere } from "./elsewhere.mjs";
 import { armTrial, arenaTrial, CELLS, compose, csvOf, encode, eyePixel, foragingTrial, lean, pageOf, SCRIPTS, STYLE, viewer } from "./mock.mjs";
 import { coloursIn, decode } from "./png.mjs";
+import { meshes } from "./meshes.mjs";
 import { newcomers, phoned } from "./newcomers.mjs";
 import { isFirefox, KEY, startDriver } from "./webdriver.mjs";
 
@@ -1287,6 +1288,7 @@ try {
     await part("scales", () => scales(browser));
     await part("labels", () => labelled(browser));
     await part("layout and moments", () => newcomers(browser, { check, write, opened, settled, rectOf, silent }));
+    await part("meshes", () => meshes(browser, { check, write, opened, settled, rectOf, silent }));
     if (livePage) await part("live", () => lives(browser));
     if (evolvingPage) await part("evolution", () => evolves(browser));
     if (servedPage) await part("served", () => serves(browser));

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use farsa_body::Pose;
 use farsa_body::ports::BodyId;
-use farsa_body::robot::{Robot, Visual};
+use farsa_body::robot::{Collider, Visual};
 use farsa_num::crc32;
 use serde_json::{Value, json};
 
@@ -15,6 +15,7 @@ use crate::recording::memory::Recording;
 use crate::recording::schema::Channel;
 use crate::shape::appearance::as_screens_take_it;
 use crate::shape::geometry::Geometry;
+use crate::shape::scene_mesh::SceneMesh;
 use crate::shape::scene_object::ShownWhile;
 
 /// A recorded episode with its name and facts about its outcome.
@@ -115,6 +116,9 @@ impl EpisodeData {
         if !grounds.is_empty() {
             data["ground_images"] = grounds.into();
         }
+        if !schema.meshes.is_empty() {
+            data["meshes"] = schema.meshes.iter().map(SceneMesh::data).collect();
+        }
         if let Some(network) = self.network() {
             data["network"] = network;
         }
@@ -130,8 +134,7 @@ impl EpisodeData {
     fn shapes(&self, bodies: &[BodyId]) -> Vec<Value> {
         let schema = self.recording.schema();
         let columns = schema.columns();
-        let shape = |name: &str, body: Option<BodyId>, geometry: Geometry, placement: &Pose<f64>, role: &str| {
-            let mut shape = geometry_data(geometry);
+        let placed = |mut shape: Value, name: &str, body: Option<BodyId>, placement: &Pose<f64>, role: &str| {
             let body = body.and_then(|body| bodies.iter().position(|other| *other == body));
             shape["name"] = name.into();
             shape["body"] = body.map_or_else(|| (-1).into(), Value::from);
@@ -140,16 +143,28 @@ impl EpisodeData {
             shape["rotation"] = json!(placement.rotation.map(short));
             shape
         };
+        let shape = |name: &str, body: Option<BodyId>, geometry: Geometry, placement: &Pose<f64>, role: &str| {
+            placed(geometry_data(geometry), name, body, placement, role)
+        };
         let looks: Vec<Look> = schema.robot.as_ref().map(looks).unwrap_or_default();
+        let look =
+            |body: Option<BodyId>| body.and_then(|body| looks.get(body.index()).copied()).unwrap_or(Look::GROUND);
         let drawn = |name: &str, &Visual { body, shape: form, placement, color }: &Visual| {
-            let look = body.and_then(|body| looks.get(body.index()).copied()).unwrap_or(Look::GROUND);
+            let look = look(body);
             let mut value = shape(name, body, form.into(), &placement, look.role.name());
             if let Some(color) = color.map(as_screens_take_it).or(look.color) {
                 value["color"] = hex(color).into();
             }
             value
         };
-        let colliders = schema.robot.iter().flat_map(Robot::drawn_colliders);
+        let colliders = schema.robot.iter().flat_map(|robot| {
+            let index = |collider| robot.colliders.iter().position(|other| std::ptr::eq(other, collider));
+            let replaced = move |collider: &Collider| {
+                let index = index(collider).unwrap_or_default();
+                schema.meshes.iter().any(|mesh| mesh.replaces(index, collider.body))
+            };
+            robot.drawn_colliders().filter(move |collider| !replaced(collider))
+        });
         let colliders = colliders.map(|collider| drawn(&collider.name, &collider.into()));
         let visuals = schema.robot.iter().flat_map(|robot| &robot.visuals);
         let visuals = visuals.map(|visual| drawn(visual.body.map_or("", |body| schema.body_name(body)), visual));
@@ -165,7 +180,17 @@ impl EpisodeData {
             }
             Some(value)
         });
-        colliders.chain(visuals).chain(objects).collect()
+        let meshes = schema.meshes.iter().enumerate().map(|(number, mesh)| {
+            let look = look(mesh.body);
+            let name = mesh.body.map_or("", |body| schema.body_name(body));
+            let solid = json!({"kind": "mesh", "mesh": number, "half": mesh.half().map(short)});
+            let mut value = placed(solid, name, mesh.body, &Pose::at(mesh.centre), look.role.name());
+            if let Some(color) = mesh.color.or(look.color) {
+                value["color"] = hex(color).into();
+            }
+            value
+        });
+        colliders.chain(visuals).chain(meshes).chain(objects).collect()
     }
 
     fn pairs(&self) -> Vec<[&str; 2]> {

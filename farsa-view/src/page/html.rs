@@ -86,11 +86,24 @@ impl Page {
     pub fn html(&self) -> String {
         let top = self.episodes.first().is_some_and(|episode| episode.recording.schema().view == View::Top);
         let mut data = data_head(&self.title, top);
-        data["episodes"] = self.episodes.iter().map(EpisodeData::json).collect();
+        let mut episodes: Vec<Value> = self.episodes.iter().map(EpisodeData::json).collect();
+        share_meshes(&mut episodes);
+        data["episodes"] = episodes.into();
         if let Some(second) = self.second {
             data["beside"] = second.into();
         }
         composed(&self.title, &data, Kind::Recorded)
+    }
+}
+
+/// Replaces the meshes of an episode by the index of the first episode with the same ones.
+fn share_meshes(episodes: &mut [Value]) {
+    for index in 1..episodes.len() {
+        let (before, rest) = episodes.split_at_mut(index);
+        let Some(meshes) = rest[0].get_mut("meshes") else { continue };
+        if let Some(first) = before.iter().position(|episode| episode.get("meshes") == Some(meshes)) {
+            *meshes = first.into();
+        }
     }
 }
 
@@ -188,6 +201,7 @@ pub fn readable(x: f64) -> String {
 mod tests {
     use super::*;
     use crate::recording::schema::{ImageChannel, Schema};
+    use crate::shape::scene_mesh::SceneMesh;
     use base64::Engine as _;
     use base64::engine::general_purpose::STANDARD;
     use farsa_body::ports::{PairContact, PairId};
@@ -366,6 +380,36 @@ mod tests {
         let channels = page["episodes"][0]["channels"].as_array().unwrap();
         let labels: Vec<_> = channels.iter().map(|c| (c["name"].as_str().unwrap(), c.get("label"))).collect();
         assert_eq!(labels, [("J4", Some(&json!("elbow extension"))), ("x", None), ("J1", Some(&json!(hostile)))]);
+    }
+
+    #[test]
+    fn meshes_replace_colliders_and_are_stored_once() {
+        let robot = farsa_body::robots::ArmAndHand::default().robot().unwrap();
+        let points = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 2.0, 1.0], [0.0, 0.0, 4.0]];
+        let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        let on = |body: usize| SceneMesh::new(robot.colliders[body].body, &points, &triangles).unwrap();
+        let mut schema = Schema::from_robot(&robot);
+        let plain = data(&Page::new("p").with("one", Recording::new(schema.clone())).html());
+        schema.meshes = [on(2).with_color([255, 0, 0]), on(0).instead_of(0)].into();
+        let page = Page::new("m").with("one", Recording::new(schema.clone())).with("two", Recording::new(schema));
+        let page = data(&page.html());
+        let shapes = |page: &Value| page["episodes"][0]["shapes"].as_array().unwrap().clone();
+        let (before, after) = (shapes(&plain), shapes(&page));
+        let gone = robot.colliders.iter().filter(|collider| collider.body == robot.colliders[2].body).count() + 1;
+        assert_eq!(after.len(), before.len() - gone + 2);
+        let [first, second] = after.iter().filter(|shape| shape["kind"] == "mesh").collect::<Vec<_>>()[..] else {
+            panic!("{after:?}")
+        };
+        assert_eq!(
+            (&first["mesh"], &first["half"], &first["position"]),
+            (&json!(0), &json!([0.5, 1, 1.5]), &json!([0.5, 1, 2.5]))
+        );
+        assert_eq!((&first["color"], &second["mesh"]), (&json!("#ff0000"), &json!(1)));
+        let meshes = &page["episodes"][0]["meshes"];
+        let bytes = |key: &str| STANDARD.decode(meshes[0][key].as_str().unwrap()).unwrap();
+        let corners: Vec<usize> = (0..12).map(|i| word(&bytes("triangles"), 2 * i).into()).collect();
+        assert_eq!((bytes("points").len(), corners), (24, triangles.concat()));
+        assert_eq!((&page["episodes"][1]["meshes"], plain["episodes"][0].get("meshes")), (&json!(0), None));
     }
 
     #[test]

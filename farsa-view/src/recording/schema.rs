@@ -1,10 +1,13 @@
 //! Schema of a recording: bodies, channels and a network.
 
+use std::sync::Arc;
+
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{JointKind, Robot};
 use farsa_nn::{LeakyLayout, LeakyParameter};
 
 use crate::recording::view::View;
+use crate::shape::scene_mesh::SceneMesh;
 use crate::shape::scene_object::SceneObject;
 
 /// A quantity with one value per tick, as in tables and pages.
@@ -144,6 +147,8 @@ pub struct Schema {
     pub bodies: Vec<String>,
     /// Further visible objects.
     pub objects: Vec<SceneObject>,
+    /// Meshes that pages draw instead of colliders.
+    pub meshes: Arc<[SceneMesh]>,
     /// Sensors of the controller.
     pub sensors: Vec<Channel>,
     /// Neurons between sensors and motors.
@@ -254,7 +259,9 @@ impl Schema {
     /// Iterates over the visible bodies.
     pub fn shown(&self) -> impl Iterator<Item = BodyId> + '_ {
         let of_robot = self.robot.iter().flat_map(Robot::shaped_bodies);
-        let mut of_objects: Vec<BodyId> = self.objects.iter().filter_map(|object| object.body).collect();
+        let of_meshes = self.meshes.iter().filter_map(|mesh| mesh.body);
+        let of_objects = self.objects.iter().filter_map(|object| object.body);
+        let mut of_objects: Vec<BodyId> = of_objects.chain(of_meshes).collect();
         of_objects.sort_unstable();
         of_objects.dedup();
         let visible =

@@ -4,6 +4,8 @@
 pub(crate) mod appearance;
 /// Spheres, capsules, boxes and others, with their rays and outlines.
 pub(crate) mod geometry;
+/// Triangle meshes of pages.
+pub(crate) mod scene_mesh;
 /// Shapes that no robot contains.
 pub(crate) mod scene_object;
 /// Vectors of three numbers.
@@ -11,4 +13,5 @@ pub(crate) mod vector;
 
 pub use appearance::{Color, Instance, OKABE_ITO, Role};
 pub use geometry::Geometry;
+pub use scene_mesh::SceneMesh;
 pub use scene_object::{SceneObject, ShownWhile, screen_color};

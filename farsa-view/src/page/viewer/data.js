@@ -47,6 +47,13 @@ const HOME = {position: [0, 0, 0], rotation: [0, 0, 0, 1]};
 // Red, green and blue of a pixel.
 const shadesOf = (p) => [(p >> 11)/31, (p >> 5 & 63)/63, (p & 31)/31];
 
+// The points of a mesh and three of them for each triangle.
+function solidIn({points, triangles}) {
+	const [at, corners] = [new Int16Array(bytesOf(points).buffer), [...new Uint16Array(bytesOf(triangles).buffer)]];
+	need(corners.every((i) => 3*i + 2 < at.length), "a mesh is out of range");
+	return {at, corners};
+}
+
 class Trial {
 	constructor(json, index) {
 		Object.assign(this, json, {index, json, name: String(json.name)});
@@ -71,6 +78,8 @@ class Trial {
 		};
 		const words = this.words = new Uint16Array(bytes.buffer, 0, bytes.length >> 1);
 		this.signed = new Int16Array(words.buffer, 0, words.length);
+		const solids = (json.meshes || []).map(solidIn);
+		this.shapes = json.shapes.map((shape) => ({...shape, solid: solids[shape.mesh]}));
 		this.times = block("times", ticks, 4);
 		this.end = this.times[ticks - 1];
 		this.pushes = [];
@@ -260,6 +269,7 @@ function readPage(element) {
 	const episodes = page.episodes ?? page.lives;
 	need(episodes?.length || page.live, "it holds no trial");
 	try {
+		for (const trial of episodes) if (whole(trial.meshes)) trial.meshes = episodes[trial.meshes].meshes;
 		return {...page, trials: episodes.map((trial, i) => new Trial(trial, i))};
 	} catch (error) {
 		throw error instanceof Damage ? error : new Damage(`its data lacks something (${error.message})`);

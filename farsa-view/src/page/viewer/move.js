@@ -9,7 +9,7 @@ function weightOf({shapes}, body) {
 	const own = shapes.filter((shape) => (thing ? shape.body === body : shape.role === "robot" && shape.body >= 0));
 	return own.reduce((sum, {kind, half, radius: r, half_length: long = 0}) => {
 		const round = 2*Math.PI*r*r*long + (kind === "cylinder" ? 0 : 4/3*Math.PI*r**3);
-		return sum + 1000*(kind === "box" ? 8*half[0]*half[1]*half[2] : round);
+		return sum + 1000*(half ? 8*half[0]*half[1]*half[2] : round);
 	}, 0);
 }
 

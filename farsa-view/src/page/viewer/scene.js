@@ -112,6 +112,18 @@ function solidOf(gl, data) {
 	return {array, count: data.length/7};
 }
 
+// The vertices of a mesh. Faces at angles below 45 degrees have common normals.
+function facetsOf({solid: {at, corners}, half}) {
+	const around = [];
+	const faces = corners.map((_, k) => {
+		const [a, b, c] = corners.slice(k - k%3, k - k%3 + 3).map((i) => half.map((h, axis) => h*at[3*i + axis]));
+		const normal = unit(cross(sub(b, a), sub(c, a)));
+		(around[corners[k]] ??= []).push(normal);
+		return normal;
+	});
+	return corners.flatMap((i, k) => [...half.map((_, axis) => at[3*i + axis]/32767), ...unit(around[i].filter((n) => dot(n, faces[k]) > 0.7).reduce(add, [0, 0, 0])), 0]);
+}
+
 function shadowsOf(gl) {
 	const [map, frame] = [gl.createTexture(), gl.createFramebuffer()];
 	gl.bindTexture(gl.TEXTURE_2D, map);
@@ -206,7 +218,7 @@ function metAt({shape: {kind, half, radius: r, half_length: long = 0}, origin, r
 		const [near, far] = [max(...spans.map((span) => span[0])), min(...spans.map((span) => span[1]))];
 		return near <= far ? near : Infinity;
 	};
-	if (kind === "box") return both(...half.map(slab));
+	if (half) return both(...half.map(slab));
 	const side = both(round([o[0], o[1], 0], [d[0], d[1], 0]), slab(long, 2));
 	return kind === "cylinder" ? side : min(side, ...[long, -long].map((z) => both(round(sub(o, [0, 0, z]), d))));
 }
@@ -235,7 +247,7 @@ class Scene {
 		const names = list(gl.getProgramParameter(this.program, gl.ACTIVE_UNIFORMS), (i) => gl.getActiveUniform(this.program, i).name);
 		this.places = Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(this.program, name)]));
 		this.solids = [16, 32, 96].map((n) => Object.fromEntries(Object.entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
-		this.ribbons = new WeakMap();
+		this.made = new WeakMap();
 		this.shadows = shadowsOf(gl);
 		gl.uniform1i(this.places.depths, 1);
 		gl.enable(gl.DEPTH_TEST);
@@ -253,7 +265,7 @@ class Scene {
 
 	mesh(kind, origin, rotation, size, color, stretch = 0) {
 		const {gl, places} = this;
-		const {array, count} = this.solids[(size[0] > this.coarse) + (size[0] > 4*this.coarse)][kind];
+		const {array, count} = kind.solid ? this.facets(kind) : this.solids[(size[0] > this.coarse) + (size[0] > 4*this.coarse)][kind];
 		gl.uniform3fv(places.origin, origin);
 		gl.uniform4fv(places.rotation, rotation);
 		gl.uniform3fv(places.size, size);
@@ -263,14 +275,21 @@ class Scene {
 		gl.drawArrays(gl.TRIANGLES, 0, count);
 	}
 
+	facets(shape) {
+		const {gl, made} = this;
+		if (!made.has(shape)) made.set(shape, solidOf(gl, facetsOf(shape)));
+		return made.get(shape);
+	}
+
 	ball(at, r, color) {
 		this.mesh("capsule", at, HOME.rotation, [r, r, r], color);
 	}
 
-	shape({shape: {kind, radius: r, half, half_length: long}, origin, rotation, color}) {
+	shape({shape, origin, rotation, color}) {
+		const {kind, radius: r, half, half_length: long} = shape;
 		const wide = 60*this.camera.radius;
-		const size = {box: half, plane: [wide, wide, 0], cylinder: [r, r, long]}[kind] || [r, r, r];
-		this.mesh({sphere: "capsule", plane: "box"}[kind] || kind, origin, rotation, size, color, kind === "capsule" ? long : 0);
+		const size = {plane: [wide, wide, 0], cylinder: [r, r, long]}[kind] || half || [r, r, r];
+		this.mesh({sphere: "capsule", plane: "box", mesh: shape}[kind] || kind, origin, rotation, size, color, kind === "capsule" ? long : 0);
 	}
 
 	line(a, b, thick, color, head = 0) {
@@ -387,9 +406,9 @@ class Scene {
 
 	// The past trail, and faintly the future one.
 	trail(trial, i, {color}, tick, thick, alpha) {
-		const {gl, ribbons, camera: {radius}} = this;
-		if (ribbons.get(trial)?.radius !== radius) ribbons.set(trial, {radius, made: trial.trails.map(({path}) => ribbonOf(gl, thinned(path, radius)))});
-		const {array, count, counts} = ribbons.get(trial).made[i];
+		const {gl, made, camera: {radius}} = this;
+		if (made.get(trial)?.radius !== radius) made.set(trial, {radius, ribbons: trial.trails.map(({path}) => ribbonOf(gl, thinned(path, radius)))});
+		const {array, count, counts} = made.get(trial).ribbons[i];
 		const past = counts.findLast(({t}) => t <= tick).count;
 		gl.bindVertexArray(array);
 		for (const [from, to, much] of [[0, past, 1], [past - 2, count, 0.3]]) {
