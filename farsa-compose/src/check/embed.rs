@@ -10,6 +10,7 @@ use farsa_models::ReadOptions;
 use crate::check::registry::Registry;
 use crate::check::source::Source;
 use crate::document::{Document, NetworkKind};
+use crate::jointed::drawn_meshes;
 use crate::jointed::robot_model::model_options;
 
 /// Most bytes of a named file.
@@ -20,16 +21,17 @@ const MAX_FILES: usize = 16;
 /// Path of the file of a robot.
 const MODEL: &str = "/robot/file";
 
-/// Returns the text of a model with the files that it includes, and with primitives for its meshes.
+/// Returns the text of a model with the files that it includes, and with primitives for its meshes, and the text of the
+/// meshes for pages.
 ///
 /// All of its files are in the experiment's folder or below it, and so are its packages.
-fn merged(target: &Path, root: &Path) -> Result<String, String> {
+fn merged(target: &Path, root: &Path) -> Result<(String, Option<String>), String> {
     let options = ReadOptions { root: Some(root.into()), packages: vec![root.into()], ..model_options() };
     let text = farsa_models::self_contained(target, &options).map_err(|error| error.to_string())?;
     if text.len() as u64 > MAX_BYTES {
         return Err(format!("has {} bytes with its included files, more than {MAX_BYTES}", text.len()));
     }
-    Ok(text)
+    Ok((text, drawn_meshes::text_of(target, &options)))
 }
 
 /// Lists the names of files in a document, with their paths.
@@ -78,6 +80,7 @@ pub(crate) fn embedded(
         });
     };
     let mut contents: Vec<(String, String)> = Vec::new();
+    let mut meshes = None;
     for (path, name) in named {
         if contents.iter().any(|(known, _)| *known == name) {
             continue;
@@ -102,7 +105,9 @@ pub(crate) fn embedded(
         }
         let mut content = read_text_file(&target, MAX_BYTES).map_err(|error| source.wrong(&path, error))?;
         if path == MODEL && ["<include", "<mesh"].iter().any(|part| content.contains(part)) {
-            content = merged(&target, root).map_err(|why| source.wrong(&path, format!("{name}: {why}")))?;
+            let merged = merged(&target, root).map_err(|why| source.wrong(&path, format!("{name}: {why}")))?;
+            content = merged.0;
+            meshes = merged.1.map(|text| (drawn_meshes::text_name(&name), text));
         }
         contents.push((name, content));
     }
@@ -110,7 +115,7 @@ pub(crate) fn embedded(
         return Ok(None);
     }
     let mut text = format!("{}\n\n[files]\n", text.trim_end());
-    for (name, content) in contents {
+    for (name, content) in contents.into_iter().chain(meshes) {
         // Writing into a string cannot fail.
         let _ = writeln!(text, "{} = {}", toml::Value::String(name), toml::Value::String(content));
     }

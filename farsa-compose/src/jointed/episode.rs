@@ -96,7 +96,7 @@ fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
         let object = SceneObject::new(&marker.name, ball, Pose::identity(), Role::Object);
         objects.push(object.on_body(body).with_color(screen_color(marker.color)));
     }
-    let mut schema = Schema { objects, ..Schema::from_robot(&robot) };
+    let mut schema = Schema { objects, meshes: scene.meshes.clone(), ..Schema::from_robot(&robot) };
     for (sensor, (name, _)) in setup.equipment.sensors.iter().zip(sensors) {
         if let Some(camera) = camera_of(&*sensor.kind().0) {
             schema = schema.with_image(name, camera.size());

@@ -1,5 +1,7 @@
 //! A robot with joints in space.
 
+/// Meshes of a model's file.
+pub(crate) mod drawn_meshes;
 /// Episode.
 pub(crate) mod episode;
 /// Registered sensors and motors.

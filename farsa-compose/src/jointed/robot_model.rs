@@ -5,9 +5,11 @@ use farsa_body::ports::BodyId;
 use farsa_body::robot::Robot;
 use farsa_lab::Error;
 use farsa_models::{Imported, Limits, Meshes, ReadOptions};
+use farsa_view::shape::SceneMesh;
 
 use crate::check::source::Source;
 use crate::document::{self, Document};
+use crate::jointed::drawn_meshes;
 use crate::part::definition::Maker;
 
 /// A robot with the frames of the links or bodies of its file.
@@ -16,6 +18,8 @@ pub(crate) struct RobotModel {
     pub(crate) frames: Vec<(String, Option<BodyId>, Pose<f64>)>,
     /// False if the model disables all contacts.
     pub(crate) touches: bool,
+    /// Meshes that pages draw.
+    pub(crate) meshes: Vec<SceneMesh>,
 }
 
 /// Most elements of a model.
@@ -46,7 +50,9 @@ impl RobotModel {
             }
             (_, Some(_)) => return Err(source.wrong("/robot/file", "is for the kind `model`")),
             (_, None) if *floating => return Err(source.wrong("/robot/floating", "is for the kind `model`")),
-            (Some(Maker::Joints(robot)), None) => Self { robot: (**robot).clone(), frames: Vec::new(), touches: true },
+            (Some(Maker::Joints(robot)), None) => {
+                Self { robot: (**robot).clone(), frames: Vec::new(), touches: true, meshes: Vec::new() }
+            }
             (_, None) => return Err(source.wrong("/robot/kind", "is no robot with joints")),
         };
         body.place(*base);
@@ -65,16 +71,16 @@ impl RobotModel {
             return Err(source.wrong("/robot/file", format!("{name}: has nothing that moves")));
         }
         let frames = frames.into_iter().map(|frame| (frame.name, frame.body, frame.placement)).collect();
-        Ok(Self { robot, frames, touches: contacts })
+        let meshes = document.files.get(&drawn_meshes::text_name(name));
+        let meshes = meshes.map(|text| drawn_meshes::read(text, &robot)).transpose();
+        let meshes = meshes.map_err(|why| source.wrong("/robot/file", format!("{name}: {why}")))?.unwrap_or_default();
+        Ok(Self { robot, frames, touches: contacts, meshes })
     }
 
     /// Moves all segments that are fixed to the world.
     fn place(&mut self, base: [f64; 3]) {
-        let moved = |pose: &mut Pose<f64>| {
-            for (x, by) in pose.position.iter_mut().zip(base) {
-                *x += by;
-            }
-        };
+        let shifted = |position: &mut [f64; 3]| position.iter_mut().zip(base).for_each(|(x, by)| *x += by);
+        let moved = |pose: &mut Pose<f64>| shifted(&mut pose.position);
         // All other poses are relative to a parent and move with it.
         let roots = self.robot.segments.iter_mut().filter(|segment| segment.parent.is_none());
         roots.for_each(|segment| moved(&mut segment.joint.placement));
@@ -82,6 +88,8 @@ impl RobotModel {
         standing.for_each(|collider| moved(&mut collider.placement));
         let standing = self.robot.visuals.iter_mut().filter(|visual| visual.body.is_none());
         standing.for_each(|visual| moved(&mut visual.placement));
+        let standing = self.meshes.iter_mut().filter(|mesh| mesh.body.is_none());
+        standing.for_each(|mesh| shifted(&mut mesh.centre));
         let standing = self.frames.iter_mut().filter(|(_, body, _)| body.is_none());
         standing.for_each(|(_, _, placement)| moved(placement));
     }

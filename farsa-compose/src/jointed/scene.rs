@@ -1,12 +1,14 @@
 //! Robot with the floor and the objects, and the parts that names refer to.
 
+use std::sync::Arc;
+
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::robot::{Collider, Robot, Shape, Surface};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
 use farsa_num::Scalar;
-use farsa_view::shape::{Geometry, Role, SceneObject};
+use farsa_view::shape::{Geometry, Role, SceneMesh, SceneObject};
 
 use crate::check::source::Source;
 use crate::document::{Document, Engine};
@@ -26,6 +28,8 @@ pub(crate) struct Scene {
     pub(crate) markers: Vec<Marker>,
     /// Drawn objects other than the robot.
     pub(crate) drawn: Vec<SceneObject>,
+    /// Meshes of the robot.
+    pub(crate) meshes: Arc<[SceneMesh]>,
     /// Collider of the floor.
     floor: Option<usize>,
     /// True for an engine in which cameras with sectors see.
@@ -39,7 +43,7 @@ const FLOOR: &str = "floor";
 impl Scene {
     /// Builds the robot of a document with its surroundings.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
-        let RobotModel { mut robot, frames, touches } = RobotModel::new(document, source)?;
+        let RobotModel { mut robot, frames, touches, meshes } = RobotModel::new(document, source)?;
         let shows = document.world.engine != Engine::Rapier;
         let own = [robot.segments.len(), robot.colliders.len()];
         let (mut things, mut markers, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
@@ -61,7 +65,8 @@ impl Scene {
             }
             things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
-        let mut scene = Self { robot, own, frames, things, markers, drawn, floor, shows };
+        let meshes = meshes.into();
+        let mut scene = Self { robot, own, frames, things, markers, drawn, meshes, floor, shows };
         scene.pair(document, touches);
         Ok(scene)
     }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use farsa_compose::ComposedExperiment;
 use farsa_lab::{EpisodeId, Error, Evaluation, Experiment as _, Settings};
+use farsa_view::{Page, Recording};
+use serde_json::{Value, json};
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -89,6 +91,60 @@ fn models_with_includes_and_meshes_are_stored_with_the_run() {
         error.contains("`robot.file`: model/arm.xml: parts/asset.xml line 1: \"cube.obj\" is not there"),
         "{error}"
     );
+}
+
+/// Returns the shapes of a page of the first trial, and its meshes.
+fn page(made: &ComposedExperiment) -> (Vec<Value>, Value) {
+    let mut evaluator = made.prepare("", &Settings::new(made.settings("")).expect("settings")).expect("an evaluator");
+    let parameters = vec![0.7; evaluator.info().parameters.len()];
+    let mut recording = Recording::new(evaluator.info().schema);
+    evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), Some(&mut recording));
+    let page = Page::new("meshes").with("one", recording).episode(0).expect("an episode");
+    let mut page: Value = serde_json::from_str(&page).expect("JSON");
+    (page["shapes"].as_array().expect("shapes").clone(), page["meshes"].take())
+}
+
+#[test]
+fn pages_draw_the_meshes_of_a_model() {
+    let folder = folder("drawn");
+    fs::write(folder.join("model/parts/cube.obj"), CUBE).expect("a file");
+    let arm = |visual: &str| {
+        format!(
+            "<robot name='r'><link name='base'/><link name='arm'><inertial><mass value='8'/><inertia ixx='0.05' iyy='0.05' \
+             izz='0.05' ixy='0' ixz='0' iyz='0'/></inertial><collision><geometry><sphere radius='0.1'/></geometry></collision>\
+             {visual}</link><joint name='hinge' type='continuous'><parent link='base'/><child link='arm'/>\
+             <origin xyz='0 0 0.5'/><axis xyz='0 1 0'/></joint></robot>"
+        )
+    };
+    let visual = "<visual><origin xyz='0.2 0 0'/><geometry><mesh filename='parts/cube.obj' scale='1 2 3'/></geometry>\
+        <material name='red'><color rgba='1 0 0 1'/></material></visual>";
+    let text = experiment("model/arm.urdf", 0.0, "");
+    fs::write(folder.join("model/arm.urdf"), arm("")).expect("a file");
+    let plain = read(&folder, &text).expect("an experiment");
+    assert!(page(&plain).0.iter().any(|shape| shape["kind"] == "sphere") && page(&plain).1.is_null());
+    fs::write(folder.join("model/arm.urdf"), arm(visual)).expect("a file");
+    let made = read(&folder, &text).expect("an experiment");
+    assert_eq!(terms(&made), terms(&plain));
+    // A stored text opens no file.
+    fs::remove_file(folder.join("model/parts/cube.obj")).expect("the file");
+    let stored = made.definition().expect("a text").to_owned();
+    let read_again = |text: &str| ComposedExperiment::from_text("cube.toml", text, farsa_lab::strategy::strategies());
+    let (shapes, meshes) = page(&read_again(&stored).expect("an experiment"));
+    assert_eq!((&shapes, &meshes), (&page(&made).0, &page(&made).1));
+    let [mesh] = shapes.iter().filter(|shape| shape["role"] == "robot").collect::<Vec<_>>()[..] else {
+        panic!("{shapes:?}")
+    };
+    let found = ["kind", "color", "half", "position"].map(|key| mesh[key].clone());
+    assert_eq!(found, [json!("mesh"), json!("#ff0000"), json!([0.1, 0.2, 0.3]), json!([0.2, 0, 0])]);
+    // A triangle has three corners of 16 bits.
+    assert_eq!(meshes[0]["triangles"].as_str().map(str::len), Some(12 * 3 * 2 * 4 / 3));
+    for (from, to, why) in [("\"body\":1", "\"body\":2", "absent body"), ("\"half\"", "\"size\"", "a mesh lacks a key")]
+    {
+        let changed = stored.replace(&from.replace('"', "\\\""), &to.replace('"', "\\\"")).replace(from, to);
+        assert_ne!(changed, stored);
+        let error = read_again(&changed).err().expect("an error").to_string();
+        assert!(error.contains("`robot.file`: model/arm.urdf: ") && error.contains(why), "{error}");
+    }
 }
 
 #[test]
