@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::check::registry::Registry;
 use crate::motors::motors;
+use crate::networks::networks;
 use crate::robots::robots;
 use crate::sensors::sensors;
 use crate::starts::starts;
@@ -16,7 +17,7 @@ use crate::things::things;
 use crate::wrappers::wrappers;
 
 fn built_in() -> Vec<Part> {
-    [robots(), sensors(), motors(), wrappers(), terms(), starts(), things()].into_iter().flatten().collect()
+    [robots(), sensors(), motors(), wrappers(), networks(), terms(), starts(), things()].into_iter().flatten().collect()
 }
 
 /// Registry of the format, whose schemas are built once because each takes a megabyte.

@@ -3,19 +3,14 @@
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
 use farsa_lab::advanced::{Behavior, Learner, Rollout};
-use farsa_lab::exports::{
-    ControllerExport, Exports, MotorDrive, MotorExport, NetworkExport, SensorExport, SensorReading,
-};
+use farsa_lab::exports::{ControllerExport, Exports, MotorDrive, MotorExport, SensorExport, SensorReading};
 use farsa_lab::{Episode, EpisodeId, Evaluation, Outcome, Task, TaskInfo};
 use farsa_models::mjcf::MjcfOptions;
-use farsa_nn::{Controller as _, Leak};
 use farsa_view::{Channel, Schema};
 
 use crate::document::{Motor, Sensor};
 use crate::part::{PartScene, Quantity};
 use crate::parts::agents::Agents;
-use crate::parts::evonet::EvonetNetwork;
-use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::Spans;
 use crate::parts::wrapping::changes;
 
@@ -150,7 +145,7 @@ impl<E: Body> Exports for ComposedTask<E> {
         if !network.load(spec.searched.clone().all(parameters)?) {
             return None;
         }
-        let network = exported(&network, document.world.time_step)?;
+        let network = network.part().export()?;
         let (sensors, motors) = (self.sensors(robot), self.motors(robot));
         Some(ControllerExport::new(network, sensors, motors, document.world.time_step, document.episode.steps))
     }
@@ -238,27 +233,4 @@ impl<E: Body> ComposedTask<E> {
         };
         self.0.agents().spec.outputs.iter().zip(self.driven(robot).into_iter().flatten()).map(channel).collect()
     }
-}
-
-/// Builds the export of a network.
-fn exported(network: &AnyNetwork, time_step: f64) -> Option<NetworkExport> {
-    let parameters = network.own_parameters().to_vec();
-    let [inputs, outputs] = [network.inputs(), network.outputs()];
-    Some(match network {
-        AnyNetwork::Perceptron(layer, _) => {
-            NetworkExport::Perceptron { inputs, outputs, slope: layer.slope(), parameters }
-        }
-        AnyNetwork::Leaky(leaky) => NetworkExport::leaky(&leaky.layout(), Leak::Filter, &parameters),
-        AnyNetwork::Ctrnn(ctrnn) => {
-            NetworkExport::Ctrnn { layout: ctrnn.layout(), time_step: time_step as f32, parameters }
-        }
-        AnyNetwork::Reflex(_) => return None,
-        AnyNetwork::Registered(network) => network.export()?,
-        AnyNetwork::HandWired(wired) => {
-            NetworkExport::Perceptron { inputs, outputs, slope: 1.0, parameters: wired.as_layer()? }
-        }
-        AnyNetwork::Block(block) | AnyNetwork::Evonet(EvonetNetwork { network: block, .. }) => {
-            NetworkExport::Blocks { layout: block.layout().into(), leak: block.leak(), parameters }
-        }
-    })
 }

@@ -268,7 +268,7 @@ impl ComposedExperiment {
         let shape = [agents.spec.inputs.len(), agents.spec.outputs.len()];
         for (robot, reflex) in reflexes {
             let network = agents.networks.get_mut(robot).ok_or_else(|| none(robot))?;
-            *network = NormalizedController::new(AnyNetwork::Reflex(ReflexController { shape, reflex }));
+            *network = NormalizedController::new(AnyNetwork::of(ReflexController { shape, reflex }));
         }
         if agents.document.team.coevolution {
             agents.size = settings.count("evolution.population")?;

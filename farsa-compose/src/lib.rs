@@ -14,6 +14,7 @@ mod jointed;
 mod limits;
 mod motors;
 mod name;
+mod networks;
 pub mod part;
 mod parts;
 mod robots;

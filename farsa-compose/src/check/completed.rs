@@ -4,7 +4,7 @@ use farsa_lab::Error;
 use serde_json::{Map, Value};
 
 use crate::check::source::Source;
-use crate::document::{Document, NetworkKind, ObjectKind, RewardKind, Wrapper};
+use crate::document::{Document, ObjectKind, RewardKind, Wrapper};
 use crate::part::definition::{Build, Maker};
 
 /// Adds the defaults of keys to those of a part.
@@ -59,9 +59,8 @@ pub(crate) fn complete(document: &mut Document, source: &Source) -> Result<(), E
     for (index, start) in document.start.iter_mut().enumerate() {
         completed("placement", &start.how.at, &mut start.how.keys, &format!("/start/{index}"))?;
     }
-    if let NetworkKind::Registered { kind, keys } = &mut document.network.kind {
-        completed("network", kind, keys, "/network")?;
-    }
+    let network = &mut document.network.kind;
+    completed("network", &network.kind, &mut network.keys, "/network")?;
     for (index, object) in document.objects.iter_mut().enumerate() {
         completed("thing", &object.kind.kind, &mut object.kind.keys, &format!("/objects/{index}"))?;
     }

@@ -9,7 +9,7 @@ use farsa_models::ReadOptions;
 
 use crate::check::registry::Registry;
 use crate::check::source::Source;
-use crate::document::{Document, NetworkKind};
+use crate::document::Document;
 use crate::jointed::drawn_meshes;
 use crate::jointed::robot_model::model_options;
 
@@ -38,10 +38,11 @@ fn merged(target: &Path, root: &Path) -> Result<(String, Option<String>), String
 fn named(document: &Document, registry: &Registry) -> Vec<(String, String)> {
     let scene = document.world.scene.as_deref().map(|name| ("/world/scene".to_owned(), name));
     let model = document.robot.as_ref().and_then(|robot| robot.file.as_deref()).map(|name| (MODEL.to_owned(), name));
-    let network = if let NetworkKind::Evonet(evonet) = &document.network.kind { evonet.file.as_deref() } else { None };
-    let network = network.map(|name| ("/network/file".to_owned(), name));
-    let files = scene.into_iter().chain(model).chain(network).map(|(path, name)| (path, name.to_owned()));
-    let mut files: Vec<(String, String)> = files.collect();
+    let files = scene.into_iter().chain(model).map(|(path, name)| (path, name.to_owned()));
+    let network = registry.network(&document.network.kind).and_then(Result::ok);
+    let network = network.map_or_else(Vec::new, |network| network.files());
+    let network = network.into_iter().map(|(key, name)| (format!("/network/{key}"), name));
+    let mut files: Vec<(String, String)> = files.chain(network).collect();
     let demonstrations = document.learning.iter().flat_map(|learning| learning.demonstrations.iter().enumerate());
     files.extend(demonstrations.map(|(index, name)| (format!("/learning/demonstrations/{index}"), name.clone())));
     for (index, sensor) in document.sensors.iter().enumerate() {

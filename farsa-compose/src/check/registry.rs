@@ -7,10 +7,11 @@ use farsa_lab::advanced::Part;
 use serde_json::{Value, json};
 
 use crate::check::schema::{SCHEMA, close, scene_schema};
-use crate::document::{MotorKind, Placing, RobotKind, SensorKind};
+use crate::document::{MotorKind, NetworkKind, Placing, RobotKind, SensorKind};
 use crate::name::is_name;
 use crate::part::definition::{Build, Definition, Maker};
 use crate::part::motor::AnyMotor;
+use crate::part::network::AnyNetworkPart;
 use crate::part::sensor::AnySensor;
 use crate::part::start::AnyStart;
 
@@ -91,6 +92,12 @@ impl Registry {
     pub(crate) fn motor(&self, motor: &MotorKind) -> Option<Box<dyn AnyMotor>> {
         let read = self.find(&motor.kind, |build| if let Build::Motor(_, read) = build { Some(*read) } else { None });
         read?(&motor.keys).ok()
+    }
+
+    /// Reads a network.
+    pub(crate) fn network(&self, network: &NetworkKind) -> Option<Result<Box<dyn AnyNetworkPart>, Error>> {
+        let read = self.find(&network.kind, |build| if let Build::Network(read) = build { Some(*read) } else { None });
+        read.map(|read| read(&network.keys))
     }
 
     /// Reads the facts of a placement.

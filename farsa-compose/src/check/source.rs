@@ -9,6 +9,7 @@ use crate::check::registry::Registry;
 use crate::check::schema::Part;
 use crate::check::settings::names;
 use crate::limits::Limits;
+use crate::part::network::NetworkText;
 
 /// Text of an experiment, for errors with file, line and key.
 #[derive(Clone, Debug, Default)]
@@ -109,6 +110,20 @@ impl Source {
     /// Creates the error of a value.
     pub(crate) fn wrong(&self, path: &str, why: impl std::fmt::Display) -> Error {
         Error::Setting { place: self.of(path), key: key(path), why: why.to_string() }
+    }
+}
+
+impl NetworkText for Source {
+    fn wrong(&self, key: &str, why: String) -> Error {
+        Self::wrong(self, &format!("/network/{key}"), why)
+    }
+
+    fn unknown(&self, key: &str, (what, name): (&'static str, &str), names: &[&str]) -> Error {
+        Error::unknown(&self.of(&format!("/network/{key}")), what, name, names.iter().copied())
+    }
+
+    fn check_network(&self, parameters: usize, memory: usize) -> Result<(), Error> {
+        self.limits.check_network(parameters, memory)
     }
 }
 

@@ -9,12 +9,8 @@ use crate::name::NAME;
 
 /// Objectives and measures in addition to the fitness.
 mod behaviour;
-/// Networks of clusters and links.
-mod blocks;
 /// Start and end of a trial.
 mod episode;
-/// The network of the 2013 program.
-mod evonet;
 /// Food and energy.
 mod foraging;
 /// Learning from demonstrations.
@@ -35,14 +31,12 @@ mod sensor;
 mod world;
 
 pub use behaviour::{BehaviourOfTerms, DescriptorTerm, ObjectiveTerm};
-pub use blocks::{Blocks, Cluster, ClusterActivation, Link};
 pub use episode::{Ending, Episode, Start};
-pub use evonet::{Evonet, EvonetNeurons};
 pub use foraging::Foraging;
 pub use learning::{Learning, LossName};
 pub use motor::Motor;
-pub use network::{Activation, Network, NetworkKind, WeightOrder, Wire};
-pub use registered::{MotorKind, ObjectKind, Placing, SensorKind, Wrapper};
+pub use network::Network;
+pub use registered::{MotorKind, NetworkKind, ObjectKind, Placing, SensorKind, Wrapper};
 pub use reward::{Condition, Fitness, Over, Reward, RewardKind, Trials};
 pub use robot::{Robot, RobotGroup, RobotKind, Team};
 pub use sensor::Sensor;

@@ -33,5 +33,6 @@ macro_rules! registered {
 registered!(Wrapper, kind, "A change of values on their way from a sensor or to a motor.");
 registered!(SensorKind, kind, "A kind of sensor.");
 registered!(MotorKind, kind, "A kind of motor.");
+registered!(NetworkKind, kind, "A kind of network. Neurons are logistic with slope 1 unless a key changes it.");
 registered!(ObjectKind, kind, "A kind of thing.");
 registered!(Placing, at, "A kind of placement. The heading of a robot is drawn uniformly after its place.");

@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use crate::document::Object;
 use crate::part::keys::Keys;
 use crate::part::motor::AnyMotor;
-use crate::part::network::Built;
+use crate::part::network::AnyNetworkPart;
 use crate::part::object::{
     PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
 };
@@ -25,7 +25,6 @@ pub(crate) type Given = Map<String, Value>;
 /// Reads a part from its keys.
 type Reading<T> = fn(&Given) -> Result<Box<T>, Error>;
 /// Builds a part from its keys and further arguments.
-type Wiring = fn(&Given, [usize; 2], f64) -> Result<Built, Error>;
 type Composing = fn(&Given, &Object) -> Result<Vec<Object>, Error>;
 
 /// A part under its name.
@@ -54,7 +53,7 @@ pub(crate) enum Build {
     Term(InWorlds<dyn PlanarTerm, dyn SpatialTerm>),
     Start(InWorlds<dyn PlanarStart, dyn SpatialStart>, Reading<dyn AnyStart>),
     Wrapper(Reading<dyn AnyWrapper>),
-    Network(Wiring),
+    Network(Reading<dyn AnyNetworkPart>),
     Thing(Composing),
     Robot(Maker),
 }

@@ -80,7 +80,7 @@ pub(crate) mod wrapper;
 
 pub use keys::Keys;
 pub use motor::MotorPart;
-pub use network::{NetworkPart, PartNetwork};
+pub use network::{NetworkEnds, NetworkPart, PartNetwork};
 pub use object::{
     PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
 };

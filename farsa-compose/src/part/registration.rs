@@ -8,7 +8,7 @@ use farsa_lab::advanced::Part;
 use crate::document::Object;
 use crate::part::definition::{Build, Definition, Given, Maker, keys};
 use crate::part::motor::{AnyMotor, MotorPart};
-use crate::part::network::{Built, NetworkPart, built};
+use crate::part::network::{AnyNetworkPart, NetworkPart};
 use crate::part::object::{
     PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
 };
@@ -133,8 +133,8 @@ pub fn wrapper<P: WrapperPart>(name: &'static str) -> Part {
 
 /// Registers a kind of network under a name.
 pub fn network<P: NetworkPart>(name: &'static str) -> Part {
-    fn network<P: NetworkPart>(given: &Given, shape: [usize; 2], time_step: f64) -> Result<Built, Error> {
-        built(&keys::<P>(given)?, shape, time_step)
+    fn network<P: NetworkPart>(given: &Given) -> Result<Box<dyn AnyNetworkPart>, Error> {
+        Ok(Box::new(keys::<P>(given)?))
     }
     Definition::part::<P>(name, Build::Network(network::<P>))
 }

@@ -5,13 +5,12 @@ use std::sync::Arc;
 use farsa_evo::ObservationStatistics;
 use farsa_lab::advanced::{Anatomy, ChannelGroup, Description, Interventions, NormalizedController};
 use farsa_lab::{Evaluation, Outcome};
-use farsa_nn::{CtrnnLayout, CtrnnParameter};
-use farsa_view::{Channel, Links, NodeParameters, Schema};
+use farsa_view::{Channel, Schema};
 
 use crate::check::registry::Registry;
 use crate::document::Document;
 use crate::parts::groups::Groups;
-use crate::parts::interventions::{TEAM_SIZE, first_output, interventions, team_sizes};
+use crate::parts::interventions::{TEAM_SIZE, interventions, team_sizes};
 use crate::parts::ledger::Ledger;
 use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
@@ -133,21 +132,7 @@ impl Agents {
         let NetworkSpec { inputs, outputs, network, .. } = &self.spec;
         let mut schema = bodies.with_sensors(inputs).with_outputs(outputs);
         schema.outputs.iter_mut().for_each(|output| output.range = Some([0.0, 1.0]));
-        let (x, y) = (inputs.len(), inputs.len() + outputs.len());
-        schema = match network {
-            AnyNetwork::Leaky(leaky) => schema.with_network(&leaky.layout()),
-            AnyNetwork::Perceptron(..) => Schema {
-                links: vec![Links { from: [0, x], to: [x, y], first: 0 }],
-                node_parameters: vec![NodeParameters { name: "bias".into(), nodes: [x, y], first: x * (y - x) }],
-                ..schema
-            },
-            AnyNetwork::Ctrnn(ctrnn) => with_ctrnn(schema, &ctrnn.layout()),
-            _ => {
-                let neurons =
-                    (1..=network.activations().len()).map(|neuron| Channel::new(&neuron.to_string()).group("neuron"));
-                Schema { neurons: neurons.collect(), ..schema }
-            }
-        };
+        schema = network.part().drawn(schema);
         // A recording has its own column of this name.
         let name = |tally: &Tally| if tally.label() == "time [s]" { tally.name.clone() } else { tally.label().into() };
         let terms = self.ledger.shown().iter().map(|tally| Channel::new(&name(tally)).group("term"));
@@ -157,8 +142,8 @@ impl Agents {
 
     /// Builds the names for tests, for recordings with `schema`. Neurons are numbered as in the network.
     pub(crate) fn anatomy(&self, schema: &Schema) -> Anatomy {
-        let NetworkSpec { network, outputs, .. } = &self.spec;
-        Anatomy::new(schema, &self.description()).with_first(0, first_output(network, outputs.len()))
+        let network = &self.spec.network;
+        Anatomy::new(schema, &self.description()).with_first(0, network.part().first_output())
     }
 
     /// Describes sensors, motors and network.
@@ -175,57 +160,6 @@ impl Agents {
             parameters: spec.searched.parameters().len(),
             steps: document.episode.steps as usize,
             step_seconds: document.world.time_step,
-        }
-    }
-}
-
-/// Sets the neurons and links of a network in continuous time. Every output is also a neuron.
-fn with_ctrnn(schema: Schema, layout: &CtrnnLayout) -> Schema {
-    let (inputs, neurons) = (layout.inputs(), layout.neurons());
-    let nodes = [inputs, inputs + neurons];
-    let first = |kind| layout.range(kind).start;
-    let weighted = Links { from: [0, inputs], to: nodes, first: first(CtrnnParameter::InputWeight) };
-    let recurrent = Links { from: nodes, to: nodes, first: first(CtrnnParameter::Weight) };
-    let direct = layout.direct_inputs().into_iter().flatten().enumerate();
-    let direct = direct.map(|(input, neuron)| [input, inputs + neuron]);
-    let passed = layout.output_neurons().enumerate();
-    let passed = passed.map(|(output, neuron)| [inputs + neuron, inputs + neurons + output]);
-    let of_neurons = |name: &str, kind| NodeParameters { name: name.into(), nodes, first: first(kind) };
-    let named = (1..=neurons).map(|neuron| Channel::new(&neuron.to_string()).group("neuron"));
-    Schema {
-        neurons: named.collect(),
-        links: if layout.direct_inputs().is_some() { vec![recurrent] } else { vec![weighted, recurrent] },
-        direct_links: direct.chain(passed).collect(),
-        node_parameters: vec![
-            of_neurons("bias", CtrnnParameter::Bias),
-            of_neurons("gain", CtrnnParameter::Gain),
-            of_neurons("time constant", CtrnnParameter::TimeConstant),
-        ],
-        ..schema
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn links_of_a_continuous_network_meet_every_parameter_once() {
-        let plain = CtrnnLayout::new(3, 5, 2);
-        for (layout, direct) in [(plain, 0), (plain.with_direct_inputs(1), 3)] {
-            let bare = Schema::default().with_sensors(["a", "b", "c"]).with_outputs(["x", "y"]);
-            let Schema { links, direct_links, node_parameters, neurons, .. } = with_ctrnn(bare, &layout);
-            let mut seen = vec![0; layout.parameter_count()];
-            for Links { from, to, first } in &links {
-                (0..(from[1] - from[0]) * (to[1] - to[0])).for_each(|weight| seen[first + weight] += 1);
-            }
-            for NodeParameters { nodes, first, .. } in &node_parameters {
-                (0..nodes[1] - nodes[0]).for_each(|node| seen[first + node] += 1);
-            }
-            assert_eq!((seen, neurons.len()), (vec![1; layout.parameter_count()], 5));
-            // Inputs 0 to 2 go to the neurons 1 to 3, nodes 4 to 6. Outputs, nodes 8 and 9, are the last neurons.
-            let inputs = [[0, 4], [1, 5], [2, 6]].into_iter().take(direct);
-            assert_eq!(direct_links, inputs.chain([[6, 8], [7, 9]]).collect::<Vec<_>>());
         }
     }
 }

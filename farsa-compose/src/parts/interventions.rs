@@ -3,8 +3,7 @@
 use farsa_lab::advanced::{Intervention, Interventions, Protocol};
 use farsa_nn::Ablatable as _;
 
-use crate::document::{Document, Lesions, Network, NetworkKind, TestProtocol};
-use crate::parts::blocks;
+use crate::document::{Document, Lesions, TestProtocol};
 use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
 
@@ -32,7 +31,7 @@ pub(crate) fn interventions(document: &Document, spec: &NetworkSpec, robots: usi
         protocols
     } else {
         let sensors = sensors.iter().map(|(name, [first, end])| (name, *first..*end));
-        protocols.with_lesions(sensors, neurons(&document.network, network, inputs.len(), outputs))
+        protocols.with_lesions(sensors, neurons(network, outputs))
     };
     protocols.with_noise(&Interventions::NOISE)
 }
@@ -47,28 +46,12 @@ pub(crate) fn team_sizes(robots: usize) -> Vec<usize> {
 }
 
 /// Names the neurons that can be silenced. Neurons of inputs are excluded, because a cut sensor silences them.
-fn neurons(network: &Network, own: &AnyNetwork, inputs: usize, outputs: &[String]) -> Vec<(String, usize)> {
-    let first = match own {
-        AnyNetwork::Block(_) | AnyNetwork::Evonet(_) => inputs,
-        _ => 0,
-    };
-    let last = first_output(own, outputs.len());
-    let mut clusters = match &network.kind {
-        NetworkKind::Blocks(blocks) => blocks::cluster_neurons(blocks),
-        _ => Vec::new(),
-    }
-    .into_iter();
+fn neurons(network: &AnyNetwork, outputs: &[String]) -> Vec<(String, usize)> {
+    let (first, last) = (network.part().first_neuron(), network.part().first_output());
+    let mut hidden = network.part().hidden_names().into_iter();
     let name = |neuron: usize| match neuron.checked_sub(last).and_then(|output| outputs.get(output)) {
         Some(output) => format!("output of {output}"),
-        None => clusters.next().unwrap_or_else(|| format!("neuron {}", neuron + 1)),
+        None => hidden.next().unwrap_or_else(|| format!("neuron {}", neuron + 1)),
     };
-    (first..own.neurons()).map(name).zip(first..).collect()
-}
-
-/// Returns the number of the first output neuron.
-pub(crate) fn first_output(network: &AnyNetwork, outputs: usize) -> usize {
-    match network {
-        AnyNetwork::Ctrnn(ctrnn) => ctrnn.layout().output_neurons().start,
-        _ => network.neurons().saturating_sub(outputs),
-    }
+    (first..network.neurons()).map(name).zip(first..).collect()
 }

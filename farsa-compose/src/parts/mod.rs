@@ -4,24 +4,16 @@
 pub(crate) mod agents;
 /// Objectives and measures of an individual in addition to its fitness.
 pub(crate) mod behaviour;
-/// Networks of clusters and links.
-pub(crate) mod blocks;
 /// Conditions that are formulas.
 pub(crate) mod conditions;
 /// Warning about a fitness that is the same for all individuals.
 pub(crate) mod constant_fitness;
-/// Inputs and outputs between which a network is built.
-pub(crate) mod ends;
 /// Sensors and motors of a robot.
 pub(crate) mod equipment;
-/// Network of the 2013 program, with genes in its order.
-pub(crate) mod evonet;
 /// A sensor or motor in a wrapper.
 pub(crate) mod filtered;
 /// Groups of equal robots, and their populations.
 pub(crate) mod groups;
-/// Networks with wires set by hand.
-pub(crate) mod hand_wired;
 /// Lesions and noise of the test protocols.
 pub(crate) mod interventions;
 /// Terms of a trial, with success and failure.
@@ -44,8 +36,6 @@ pub(crate) mod rule_of;
 pub(crate) mod searched;
 /// Checks of sizes by the limits of a reader.
 pub(crate) mod sizes;
-/// Layouts of block networks with a static lifetime.
-pub(crate) mod static_layout;
 /// Total of a term in a trial.
 pub(crate) mod tally;
 /// A network that learns from demonstrations.

@@ -5,8 +5,8 @@ use farsa_lab::Error;
 use crate::check::source::Source;
 use crate::document::{Document, MotorKind};
 use crate::formula::channels::ChannelNames;
-use crate::parts::ends::Ends;
-use crate::parts::network::{AnyNetwork, Named};
+use crate::part::network::{Built, NetworkEnds};
+use crate::parts::network::AnyNetwork;
 use crate::parts::searched::Searched;
 use crate::parts::wrapping::changes;
 
@@ -68,8 +68,18 @@ impl NetworkSpec {
         let words = |kind: &MotorKind| registry.motor(kind).map_or(&[][..], |motor| motor.channels());
         let of_motors = of_motors.map(|motor| (motor.enabled, motor.channels.as_deref(), words(&motor.kind)));
         let outputs = channel_names("motors", of_motors, &motors, source)?;
-        let ends = Ends { inputs: &inputs, outputs: &outputs, sensors: &sensors, motors: &motors, absent: &absent };
-        let (network, Named { parameters, given }) = AnyNetwork::new(document, ends, source)?;
+        let ends = NetworkEnds {
+            inputs: &inputs,
+            outputs: &outputs,
+            time_step: document.world.time_step,
+            weights: document.network.weights,
+            sensors: &sensors,
+            motors: &motors,
+            absent: &absent,
+            files: &document.files,
+            text: source,
+        };
+        let (network, Built { parameters, given, .. }) = AnyNetwork::new(document, &ends, source)?;
         let searched = Searched::new(parameters, &given, &document.network, source)?;
         searched.check(&network, source)?;
         Ok(Self { sensors, motors, about, inputs, outputs, network, searched })

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use farsa_nn::{Ablatable, Controller, Lesion};
 
+use crate::part::PartNetwork;
+
 /// A function that computes the motor values of a robot from its sensor values.
 ///
 /// It replaces the network of the robot. This is useful for comparisons with controllers that did not evolve.
@@ -43,5 +45,23 @@ impl Ablatable for ReflexController {
     }
     fn step_ablated(&mut self, _: &[Lesion], x: &[f32], y: &mut [f32]) {
         self.step(x, y);
+    }
+}
+
+impl PartNetwork for ReflexController {
+    fn copy_parameters(&mut self, _: &[f32]) -> bool {
+        true
+    }
+
+    fn parameters(&self) -> &[f32] {
+        &[]
+    }
+
+    fn activations(&self) -> &[f32] {
+        &[]
+    }
+
+    fn summary(&self) -> String {
+        format!("{}-{}, wired by hand", self.shape[0], self.shape[1])
     }
 }

@@ -11,7 +11,11 @@ use farsa_nn::{CtrnnParameter, LeakyParameter, Network};
 use farsa_num::{Domain, Scalar, Stream};
 
 use crate::check::source::Source;
-use crate::document::{Document, Learning, LossName, WeightOrder};
+use crate::document::{Document, Learning, LossName};
+use crate::networks::blocks::BlocksNetwork;
+use crate::networks::ctrnn::CtrnnNetwork;
+use crate::networks::leaky::LeakyNetwork;
+use crate::networks::perceptron::PerceptronNetwork;
 use crate::parts::lessons::{Lesson, lessons};
 use crate::parts::network::AnyNetwork;
 use crate::parts::network_spec::NetworkSpec;
@@ -103,41 +107,39 @@ impl Trainee {
         let first = self.learning.first as f32;
         let mut weight = || draw.range(-first, first);
         let none = 0..0;
-        match &self.network {
-            AnyNetwork::Perceptron(layer, _) => {
-                let parameters = layer.parameters().iter().map(|_| weight()).collect();
-                self.of_kind(layer.clone(), parameters, none)
-            }
-            AnyNetwork::Leaky(leaky) => {
-                let kinds: Vec<LeakyParameter> = leaky.layout().kinds().collect();
-                let mut parameters: Vec<f32> = kinds.iter().map(|_| weight()).collect();
-                for (value, _) in parameters.iter_mut().zip(kinds).filter(|(_, kind)| *kind == LeakyParameter::Leak) {
-                    *value = draw.range(FIRST_LEAKS[0], FIRST_LEAKS[1]);
-                }
-                self.of_kind(leaky.clone(), parameters, none)
-            }
-            AnyNetwork::Ctrnn(ctrnn) => {
-                let layout = ctrnn.layout();
-                let mut parameters: Vec<f32> = layout.kinds().map(|_| weight()).collect();
-                parameters[layout.range(CtrnnParameter::Gain)].fill(1.0);
-                // Gains are not searched, so time constants are the last searched parameters.
-                let ends = self.parameters.last().map_or([1.0; 2], |parameter| parameter.ends);
-                for value in &mut parameters[layout.range(CtrnnParameter::TimeConstant)] {
-                    *value = draw.range(ends[0] as f32, ends[1] as f32);
-                }
-                self.of_kind(ctrnn.clone(), parameters, layout.range(CtrnnParameter::Gain))
-            }
-            AnyNetwork::Block(block) => {
-                let layout = block.layout();
-                let mut parameters: Vec<f32> = layout.kinds().map(|_| weight()).collect();
-                parameters[layout.range(BlockParameter::Gain)].fill(1.0);
-                for value in &mut parameters[layout.range(BlockParameter::Leak)] {
-                    *value = draw.range(FIRST_LEAKS[0], FIRST_LEAKS[1]);
-                }
-                self.of_kind(block.clone(), parameters, none)
-            }
-            _ => Err("needs a network of the kinds perceptron, leaky, ctrnn, blocks or a layered one".into()),
+        if let Some(PerceptronNetwork { layer, .. }) = self.network.downcast() {
+            let parameters = layer.parameters().iter().map(|_| weight()).collect();
+            return self.of_kind(layer.clone(), parameters, none);
         }
+        if let Some(LeakyNetwork { network }) = self.network.downcast() {
+            let kinds: Vec<LeakyParameter> = network.layout().kinds().collect();
+            let mut parameters: Vec<f32> = kinds.iter().map(|_| weight()).collect();
+            for (value, _) in parameters.iter_mut().zip(kinds).filter(|(_, kind)| *kind == LeakyParameter::Leak) {
+                *value = draw.range(FIRST_LEAKS[0], FIRST_LEAKS[1]);
+            }
+            return self.of_kind(network.clone(), parameters, none);
+        }
+        if let Some(CtrnnNetwork { network, .. }) = self.network.downcast() {
+            let layout = network.layout();
+            let mut parameters: Vec<f32> = layout.kinds().map(|_| weight()).collect();
+            parameters[layout.range(CtrnnParameter::Gain)].fill(1.0);
+            // Gains are not searched, so time constants are the last searched parameters.
+            let ends = self.parameters.last().map_or([1.0; 2], |parameter| parameter.ends);
+            for value in &mut parameters[layout.range(CtrnnParameter::TimeConstant)] {
+                *value = draw.range(ends[0] as f32, ends[1] as f32);
+            }
+            return self.of_kind(network.clone(), parameters, layout.range(CtrnnParameter::Gain));
+        }
+        if let Some(BlocksNetwork { network, .. }) = self.network.downcast() {
+            let layout = network.layout();
+            let mut parameters: Vec<f32> = layout.kinds().map(|_| weight()).collect();
+            parameters[layout.range(BlockParameter::Gain)].fill(1.0);
+            for value in &mut parameters[layout.range(BlockParameter::Leak)] {
+                *value = draw.range(FIRST_LEAKS[0], FIRST_LEAKS[1]);
+            }
+            return self.of_kind(network.clone(), parameters, none);
+        }
+        Err("needs a network of the kinds perceptron, leaky, ctrnn, blocks or a layered one".into())
     }
 
     fn of_kind<M, S>(
@@ -189,20 +191,7 @@ impl LabLearner for Trainee {
     }
 
     fn learned(&self, state: &[f64]) -> Vec<f64> {
-        match &self.network {
-            // Biases, then weights output by output.
-            AnyNetwork::Perceptron(layer, WeightOrder::Outputs) => {
-                use farsa_nn::Controller as _;
-                let (inputs, outputs) = (layer.inputs(), layer.outputs());
-                let biases = (0..outputs).map(|output| inputs * outputs + output);
-                let weights = (0..outputs).flat_map(|output| (0..inputs).map(move |input| input * outputs + output));
-                biases.chain(weights).filter_map(|index| state.get(index).copied()).collect()
-            }
-            AnyNetwork::Ctrnn(ctrnn) => {
-                let kinds = ctrnn.layout().kinds().zip(state);
-                kinds.filter(|(kind, _)| *kind != CtrnnParameter::Gain).map(|(_, value)| *value).collect()
-            }
-            _ => state.iter().take(self.parameters.len()).copied().collect(),
-        }
+        let count = self.network.own_parameters().len().min(state.len());
+        self.network.part().searched(&state[..count])
     }
 }

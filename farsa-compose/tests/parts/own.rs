@@ -6,8 +6,8 @@ use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 use farsa_body::robots::MobileRobot;
 use farsa_compose::document::{Object, Shape};
 use farsa_compose::part::{
-    self, Filter, MotorPart, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot, Start, StartPart, Term,
-    TermPart, ThingPart, WrapperPart,
+    self, Filter, MotorPart, NetworkEnds, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot, Start,
+    StartPart, Term, TermPart, ThingPart, WrapperPart,
 };
 use farsa_lab::advanced::Part;
 use farsa_lab::exports::NetworkExport;
@@ -204,10 +204,12 @@ impl PartNetwork for EchoNetwork {
 
 impl NetworkPart for Echo {
     type Network = EchoNetwork;
-    fn network(&self, inputs: usize, outputs: usize, _: f64) -> Result<EchoNetwork, Error> {
+    fn network(&self, ends: &NetworkEnds<'_>) -> Result<EchoNetwork, Error> {
+        let [inputs, outputs] = ends.shape();
         Ok(EchoNetwork { inputs, parameters: vec![0.0; (inputs + 1) * outputs], state: vec![0.0; outputs] })
     }
-    fn parameters(&self, inputs: usize, outputs: usize) -> Vec<Parameter> {
+    fn parameters(&self, _: &EchoNetwork, ends: &NetworkEnds<'_>) -> Vec<Parameter> {
+        let [inputs, outputs] = ends.shape();
         let names = (0..(inputs + 1) * outputs).map(|number| format!("weight {}", number + 1));
         names.map(|name| Parameter::new(name, [-self.largest, self.largest])).collect()
     }

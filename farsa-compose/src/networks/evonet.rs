@@ -1,20 +1,95 @@
-//! Network of the 2013 program, with genes in its order.
+//! The network of the 2013 program, with genes in its order.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use farsa_lab::Error;
+use farsa_lab::exports::NetworkExport;
+use farsa_lab::{Error, Parameter};
 use farsa_nn::block::{Architecture, BlockLayoutBuf, BlockNetwork, BlockParameter, EvonetRanges};
-use farsa_nn::{Activation, Leak};
+use farsa_nn::{Activation, Controller as _, Leak};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::check::source::Source;
-use crate::document::{Evonet, EvonetNeurons};
-use crate::parts::static_layout::static_layout;
+use crate::networks::blocks::in_blocks;
+use crate::networks::static_layout::static_layout;
+use crate::networks::{around, numbered, single};
+use crate::part::{NetworkEnds, NetworkPart, PartNetwork};
+
+/// The network of the 2013 program.
+///
+/// Logistic neurons connected as in Evonet, the network of the 2013 program, with its order and reading of genes.
+/// `.gen` files of that program are genotypes of this network.
+///
+/// The range of weights begins with the largest, `[5.0, -5.0]`, as in the source. A leak is the magnitude of its
+/// gene's value divided by the largest weight, so both ends of the range mean a leak of 1.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the original's file")]
+pub(super) struct Evonet {
+    /// Name of a network file of the 2013 program (`.net` or `.phe`) in the same folder. It replaces the keys below
+    /// except the largest bias and gain.
+    ///
+    /// Parameters with a value and a mutation rate of 0 in a `.phe` file are fixed. All others are searched.
+    file: Option<String>,
+    /// Hidden neurons.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1000))]
+    hidden: u32,
+    /// Kind of the hidden neurons.
+    #[serde(default)]
+    hidden_neurons: EvonetNeurons,
+    /// Adds biases to hidden neurons.
+    #[serde(default = "yes")]
+    hidden_biases: bool,
+    /// Adds biases to outputs.
+    #[serde(default = "yes")]
+    output_biases: bool,
+    /// Links hidden neurons to each other with a delay of one step.
+    #[serde(default)]
+    recurrent_hidden: bool,
+    /// Links outputs to each other with a delay of one step.
+    #[serde(default)]
+    recurrent_outputs: bool,
+    /// Links inputs to outputs in addition to the hidden neurons. Always true without hidden neurons.
+    #[serde(default)]
+    direct: bool,
+    /// Adds leaks to outputs.
+    #[serde(default)]
+    output_leaks: bool,
+    /// Largest bias.
+    #[serde(default = "five")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    largest_bias: f64,
+    /// Largest gain of neurons with gains in a file.
+    #[serde(default = "five")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    largest_gain: f64,
+}
+
+/// Kinds of hidden neurons of the 2013 program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum EvonetNeurons {
+    /// Logistic.
+    #[default]
+    Logistic,
+    /// Logistic, each with a leak.
+    Leaky,
+    /// 1 for a net input of at least 0, and 0 below.
+    Binary,
+}
+
+fn five() -> f64 {
+    5.0
+}
+
+fn yes() -> bool {
+    true
+}
 
 /// A network of blocks whose searched parameters are those of the 2013 program.
 #[derive(Clone, Debug)]
-pub(crate) struct EvonetNetwork {
-    pub(crate) network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
+pub(super) struct EvonetNetwork {
+    network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
     ranges: EvonetRanges,
     /// Index and kind of the parameter of each number of that program.
     order: Arc<[(usize, BlockParameter)]>,
@@ -26,14 +101,9 @@ pub(crate) struct EvonetNetwork {
 const MAX_LINES: usize = 1000;
 
 impl EvonetNetwork {
-    /// Builds a network at rest between the given numbers of inputs and outputs, from flags or from a file.
-    pub(crate) fn new(
-        evonet: &Evonet,
-        shape: [usize; 2],
-        weights: [f64; 2],
-        files: &BTreeMap<String, String>,
-        source: &Source,
-    ) -> Result<Self, Error> {
+    /// Builds a network at rest, from flags or from a file.
+    fn new(evonet: &Evonet, ends: &NetworkEnds<'_>) -> Result<Self, Error> {
+        let ([inputs, outputs], weights) = (ends.shape(), ends.weights);
         let weight = weights[0].abs().max(weights[1].abs()) as f32;
         // The search has one range for all numbers, that of the weights. Biases and leaks are scaled from it.
         if weight <= 0.0 {
@@ -41,18 +111,15 @@ impl EvonetNetwork {
         }
         let ranges = EvonetRanges { weight, bias: evonet.largest_bias as f32, gain: evonet.largest_gain as f32 };
         let Some(name) = &evonet.file else {
-            return Self::from_layout(from_flags(evonet, shape), Vec::new(), ranges, source);
+            return Self::from_layout(from_flags(evonet, [inputs, outputs]), Vec::new(), ranges, ends);
         };
         if let Some(flag) = flags(evonet).into_iter().find_map(|(flag, set)| set.then_some(flag)) {
-            return Err(
-                source.wrong(&format!("/network/{flag}"), format!("has no effect with `file`: {name} defines it"))
-            );
+            return Err(ends.error_at(flag, format!("has no effect with `file`: {name} defines it")));
         }
-        let wrong = |why: &dyn std::fmt::Display| source.wrong("/network/file", format!("{name}: {why}"));
-        let text = files.get(name).map(String::as_str).unwrap_or_default();
+        let wrong = |why: &dyn std::fmt::Display| ends.error_at("file", format!("{name}: {why}"));
+        let text = ends.files.get(name).map(String::as_str).unwrap_or_default();
         let farsa_nn::block::Evonet { layout, numbers, mutations } = text.parse().map_err(|error| wrong(&error))?;
-        let [inputs, outputs] = shape;
-        if [layout.inputs, layout.outputs] != shape {
+        if [layout.inputs, layout.outputs] != [inputs, outputs] {
             let why = format!(
                 "has {} sensors and {} motors where the experiment's have {inputs} and {outputs} channels",
                 layout.inputs, layout.outputs
@@ -66,7 +133,7 @@ impl EvonetNetwork {
         }
         // A number with a mutation rate of 0 is fixed. The 2013 program draws all others.
         let fixed = numbers.iter().zip(mutations).map(|(number, rate)| number.filter(|_| rate == Some(0.0)));
-        let made = Self::from_layout(layout, fixed.collect(), ranges, source);
+        let made = Self::from_layout(layout, fixed.collect(), ranges, ends);
         made.map_err(|error| if let Error::Other(why) = error { wrong(&why) } else { error })
     }
 
@@ -74,10 +141,10 @@ impl EvonetNetwork {
         layout: BlockLayoutBuf,
         given: Vec<Option<f32>>,
         ranges: EvonetRanges,
-        source: &Source,
+        ends: &NetworkEnds<'_>,
     ) -> Result<Self, Error> {
         let count = layout.layout().parameter_count();
-        source.limits.check_network(count, layout.layout().state_len())?;
+        ends.text.check_network(count, layout.layout().state_len())?;
         let layout = static_layout(layout).layout();
         let kinds: Vec<BlockParameter> = layout.kinds().collect();
         let mut seen = vec![false; count];
@@ -99,7 +166,7 @@ impl EvonetNetwork {
     }
 
     /// Iterates over the kinds of the searched parameters. All have the range of the weights.
-    pub(crate) fn kinds(&self) -> impl Iterator<Item = &'static str> + '_ {
+    fn kinds(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.order.iter().map(|(_, kind)| match kind {
             BlockParameter::Leak => "leak",
             BlockParameter::Bias => "bias",
@@ -108,13 +175,8 @@ impl EvonetNetwork {
         })
     }
 
-    /// Gets the numbers that a file fixes.
-    pub(crate) fn given(&self) -> &[Option<f32>] {
-        &self.given
-    }
-
     /// Computes the network's parameters from those of a search, or `None` for another number.
-    pub(crate) fn decode(&self, parameters: &[f32]) -> Option<Vec<f32>> {
+    fn decode(&self, parameters: &[f32]) -> Option<Vec<f32>> {
         if parameters.len() != self.order.len() {
             return None;
         }
@@ -123,6 +185,66 @@ impl EvonetNetwork {
             decoded[*index] = self.ranges.decode(*kind, *p);
         }
         Some(decoded)
+    }
+}
+
+around!(EvonetNetwork, network);
+
+impl PartNetwork for EvonetNetwork {
+    fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
+        self.network.copy_parameters(parameters).is_ok()
+    }
+
+    fn parameters(&self) -> &[f32] {
+        self.network.parameters()
+    }
+
+    fn activations(&self) -> &[f32] {
+        self.network.activations()
+    }
+
+    fn export(&self) -> Option<NetworkExport> {
+        let (layout, leak) = (self.network.layout().into(), self.network.leak());
+        Some(NetworkExport::Blocks { layout, leak, parameters: self.parameters().to_vec() })
+    }
+
+    fn load(&mut self, searched: &[f32]) -> bool {
+        self.decode(searched).is_some_and(|parameters| self.copy_parameters(&parameters))
+    }
+
+    fn memory(&self) -> usize {
+        self.network.layout().state_len()
+    }
+
+    fn summary(&self) -> String {
+        in_blocks(self)
+    }
+
+    fn first_neuron(&self) -> usize {
+        self.inputs()
+    }
+}
+
+impl NetworkPart for Evonet {
+    type Network = EvonetNetwork;
+
+    fn network(&self, ends: &NetworkEnds<'_>) -> Result<EvonetNetwork, Error> {
+        EvonetNetwork::new(self, ends)
+    }
+
+    fn parameters(&self, network: &EvonetNetwork, ends: &NetworkEnds<'_>) -> Vec<Parameter> {
+        let weights = single(ends.weights);
+        numbered(network.kinds().map(|kind| (kind, weights)))
+    }
+
+    fn given(&self, network: &EvonetNetwork, ends: &NetworkEnds<'_>) -> BTreeMap<String, f64> {
+        let parameters = self.parameters(network, ends);
+        let given = parameters.into_iter().zip(&*network.given);
+        given.filter_map(|(known, value)| Some((known.name, f64::from((*value)?)))).collect()
+    }
+
+    fn files(&self) -> Vec<(String, String)> {
+        self.file.iter().map(|name| ("file".into(), name.clone())).collect()
     }
 }
 
@@ -167,7 +289,7 @@ fn from_flags(evonet: &Evonet, [inputs, outputs]: [usize; 2]) -> BlockLayoutBuf 
 
 #[cfg(test)]
 mod tests {
-    use farsa_nn::Controller as _;
+    use crate::check::source::Source;
 
     use super::*;
 
@@ -188,7 +310,19 @@ mod tests {
     }
 
     fn new(evonet: &Evonet, weights: [f64; 2]) -> Result<EvonetNetwork, Error> {
-        EvonetNetwork::new(evonet, [3, 2], weights, &BTreeMap::new(), &Source::new("own.toml"))
+        let [inputs, outputs] = [3, 2].map(|count| vec![String::new(); count]);
+        let ends = NetworkEnds {
+            inputs: &inputs,
+            outputs: &outputs,
+            time_step: 0.1,
+            weights,
+            sensors: &[],
+            motors: &[],
+            absent: &[],
+            files: &BTreeMap::new(),
+            text: &Source::new("own.toml"),
+        };
+        EvonetNetwork::new(evonet, &ends)
     }
 
     fn logistic(x: f32) -> f32 {

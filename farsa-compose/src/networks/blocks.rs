@@ -1,12 +1,178 @@
-//! Networks of clusters and links.
+//! Clusters and links.
 
+use std::sync::Arc;
+
+use farsa_lab::exports::NetworkExport;
 use farsa_lab::{Error, Parameter};
-use farsa_nn::Activation;
-use farsa_nn::block::{Block, BlockLayout, BlockLayoutBuf, BlockParameter, Group, Span};
+use farsa_nn::block::{Block, BlockLayout, BlockLayoutBuf, BlockNetwork, BlockParameter, Group, Span};
+use farsa_nn::{Activation, Controller as _, Leak};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::check::source::Source;
-use crate::document::{Blocks, Cluster, ClusterActivation, Link};
-use crate::parts::ends::Ends;
+use crate::name::NAME;
+use crate::networks::static_layout::static_layout;
+use crate::networks::{around, single};
+use crate::part::{NetworkEnds, NetworkPart, PartNetwork};
+
+/// Clusters of neurons, and links between sensors, clusters and motors.
+///
+/// A step computes the clusters in the order of this list, then all outputs together, which drive the motors.
+///
+/// A link from a later cluster, from the cluster itself or from motors carries the values of the previous step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub(super) struct Blocks {
+    /// Clusters of neurons, in the order in which they are computed.
+    #[serde(default)]
+    clusters: Vec<Cluster>,
+    /// Links, in the order in which a sum adds them.
+    links: Vec<Link>,
+    /// Range of leaks, from the smallest gene to the largest.
+    #[serde(default = "leaks")]
+    #[schemars(inner(range(min = 0.0, max = 1.0)))]
+    leaks: [f64; 2],
+    /// Adds a bias to each output.
+    #[serde(default = "yes")]
+    output_biases: bool,
+    /// Makes outputs leaky integrators.
+    #[serde(default)]
+    output_leaks: bool,
+}
+
+/// A group of equal neurons.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+struct Cluster {
+    /// Name for links, settings and parameters.
+    #[schemars(regex(pattern = NAME))]
+    name: String,
+    /// Number of neurons.
+    #[schemars(range(min = 1, max = 10000))]
+    neurons: u32,
+    /// Activation function of the neurons.
+    #[serde(default)]
+    activation: ClusterActivation,
+    /// Factor of the net input.
+    #[serde(default = "one")]
+    #[schemars(range(min = 0.001, max = 1000.0))]
+    slope: f64,
+    /// Adds a bias to each neuron.
+    #[serde(default = "yes")]
+    biases: bool,
+    /// Makes the neurons leaky integrators.
+    #[serde(default)]
+    leaks: bool,
+}
+
+/// Activation functions, all of them bounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum ClusterActivation {
+    /// The logistic function, 0 to 1.
+    #[default]
+    Logistic,
+    /// The hyperbolic tangent, -1 to 1.
+    Tanh,
+    /// 1 for a sum of at least 0, and 0 below.
+    Step,
+}
+
+/// A link with a weight from every neuron of one end to every neuron of the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+struct Link {
+    /// Name of a sensor, cluster or motor. `sensors` and `motors` refer to all of them.
+    from: String,
+    /// Name of a cluster or motor. `motors` refers to all motors.
+    to: String,
+    /// Additional delay [steps].
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1000))]
+    delay: u32,
+}
+
+fn leaks() -> [f64; 2] {
+    [0.0, 1.0]
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// A network of blocks.
+#[derive(Clone, Debug)]
+pub(crate) struct BlocksNetwork {
+    pub(crate) network: BlockNetwork<'static, Vec<f32>, Vec<f32>>,
+    /// Names of the hidden neurons, if any.
+    hidden: Arc<[String]>,
+}
+
+around!(BlocksNetwork, network);
+
+impl BlocksNetwork {
+    /// Builds a network at rest.
+    pub(super) fn new(layout: BlockLayoutBuf, hidden: Vec<String>, ends: &NetworkEnds<'_>) -> Result<Self, Error> {
+        ends.text.check_network(layout.layout().parameter_count(), layout.layout().state_len())?;
+        let layout = static_layout(layout).layout();
+        let (parameters, state) = (vec![0.0; layout.parameter_count()], vec![0.0; layout.state_len()]);
+        let network = BlockNetwork::new(layout, Leak::Filter, parameters, state)?;
+        Ok(Self { network, hidden: hidden.into() })
+    }
+}
+
+impl PartNetwork for BlocksNetwork {
+    fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
+        self.network.copy_parameters(parameters).is_ok()
+    }
+
+    fn parameters(&self) -> &[f32] {
+        self.network.parameters()
+    }
+
+    fn activations(&self) -> &[f32] {
+        self.network.activations()
+    }
+
+    fn export(&self) -> Option<NetworkExport> {
+        let (layout, leak) = (self.network.layout().into(), self.network.leak());
+        Some(NetworkExport::Blocks { layout, leak, parameters: self.parameters().to_vec() })
+    }
+
+    fn memory(&self) -> usize {
+        self.network.layout().state_len()
+    }
+
+    fn summary(&self) -> String {
+        in_blocks(self)
+    }
+
+    fn first_neuron(&self) -> usize {
+        self.inputs()
+    }
+
+    fn hidden_names(&self) -> Vec<String> {
+        self.hidden.to_vec()
+    }
+}
+
+/// Describes a network of blocks in one line.
+pub(super) fn in_blocks(network: &impl PartNetwork) -> String {
+    let [inputs, outputs] = [network.inputs(), network.outputs()];
+    format!("{inputs}-{outputs}, {} neurons in blocks", network.activations().len().saturating_sub(inputs))
+}
+
+impl NetworkPart for Blocks {
+    type Network = BlocksNetwork;
+
+    fn network(&self, ends: &NetworkEnds<'_>) -> Result<BlocksNetwork, Error> {
+        BlocksNetwork::new(layout(self, ends)?, cluster_neurons(self), ends)
+    }
+
+    fn parameters(&self, network: &BlocksNetwork, ends: &NetworkEnds<'_>) -> Vec<Parameter> {
+        parameters(self, network.network.layout(), ends, [ends.weights, self.leaks].map(single))
+    }
+}
 
 /// A possible end of a link, with its neurons.
 struct LinkEnd {
@@ -25,12 +191,12 @@ struct ResolvedLink {
 }
 
 /// Builds the layout of a document. It updates the inputs, then links and updates each cluster, then the outputs.
-pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<BlockLayoutBuf, Error> {
-    let link_ends = link_ends(blocks, ends, source)?;
+fn layout(blocks: &Blocks, ends: &NetworkEnds<'_>) -> Result<BlockLayoutBuf, Error> {
+    let link_ends = link_ends(blocks, ends)?;
     let mut links: Vec<(usize, ResolvedLink)> = Vec::new();
     for (number, link) in blocks.links.iter().enumerate() {
-        let path = format!("/network/links/{number}");
-        let Some(found) = resolved(link, &link_ends, ends, &path, source)? else { continue };
+        let path = format!("links/{number}");
+        let Some(found) = resolved(link, &link_ends, ends, &path)? else { continue };
         // Spans [a, b) overlap if each begins before the other ends.
         let overlap = |a: Span, b: Span| a.first < b.end() && b.first < a.end();
         let same = |other: ResolvedLink| {
@@ -39,7 +205,7 @@ pub(crate) fn layout(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result
         if let Some((other, _)) = links.iter().find(|(_, other)| same(*other)) {
             let Link { from, to, .. } = link;
             let why = format!("links `{from}` with `{to}`, as link {} does with the same delay", other + 1);
-            return Err(source.wrong(&path, why));
+            return Err(ends.error_at(&path, why));
         }
         links.push((number, found));
     }
@@ -71,7 +237,7 @@ fn group(cluster: &Cluster) -> Group {
 }
 
 /// Returns all ends of links: sensors, clusters, motors, all sensors and all motors.
-fn link_ends(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<Vec<LinkEnd>, Error> {
+fn link_ends(blocks: &Blocks, ends: &NetworkEnds<'_>) -> Result<Vec<LinkEnd>, Error> {
     let part = |what, (name, [first, end]): &(String, [usize; 2]), before: usize| {
         let span = Span::new(before + first, end - first);
         LinkEnd { what, name: name.clone(), span }
@@ -85,8 +251,8 @@ fn link_ends(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<Vec<Lin
         let before = link_ends.iter().map(|end| &end.name);
         let mut taken = before.chain(ends.motors.iter().map(|(name, _)| name));
         if name == "motors" || taken.any(|other| other == name) {
-            let path = format!("/network/clusters/{number}/name");
-            return Err(source.wrong(&path, format!("`{name}` names something else already")));
+            let path = format!("clusters/{number}/name");
+            return Err(ends.error_at(&path, format!("`{name}` names something else already")));
         }
         let span = Span::new(next, cluster.neurons as usize);
         next = span.end();
@@ -101,9 +267,8 @@ fn link_ends(blocks: &Blocks, ends: Ends<'_>, source: &Source) -> Result<Vec<Lin
 fn resolved(
     link: &Link,
     link_ends: &[LinkEnd],
-    ends: Ends<'_>,
+    ends: &NetworkEnds<'_>,
     path: &str,
-    source: &Source,
 ) -> Result<Option<ResolvedLink>, Error> {
     let inputs = ends.inputs.len();
     let end = |key: &str, name: &str| {
@@ -115,14 +280,14 @@ fn resolved(
             (Some(one), None) => Ok(one.span),
             (Some(one), Some(other)) => {
                 let why = format!("`{name}` is {} and {}: give one of them another `name`", one.what, other.what);
-                Err(source.wrong(&path, why))
+                Err(ends.error_at(&path, why))
             }
             (None, _) if link_ends.iter().any(|end| end.name == name) => {
-                Err(source.wrong(&path, format!("`{name}` is what is sensed: links lead to clusters and motors")))
+                Err(ends.error_at(&path, format!("`{name}` is what is sensed: links lead to clusters and motors")))
             }
             (None, _) => {
-                let names = valid().map(|end| end.name.as_str());
-                Err(Error::unknown(&source.of(&path), "end of a link", name, names))
+                let names: Vec<&str> = valid().map(|end| end.name.as_str()).collect();
+                Err(ends.text.unknown(&path, ("end of a link", name), &names))
             }
         }
     };
@@ -136,13 +301,13 @@ fn resolved(
     let sources = ends.outputs.iter().enumerate().filter(|(output, _)| from.contains(outputs + output));
     if let Some((_, name)) = sources.into_iter().find(|(_, name)| ends.inputs.contains(name)) {
         let why = format!("`{name}` is a sensor and a motor: give one of them another `name`");
-        return Err(source.wrong(&format!("{path}/from"), why));
+        return Err(ends.error_at(&format!("{path}/from"), why));
     }
     Ok(Some(ResolvedLink { from, to, delay: link.delay as usize }))
 }
 
 /// Names the neurons of clusters.
-pub(crate) fn cluster_neurons(blocks: &Blocks) -> Vec<String> {
+fn cluster_neurons(blocks: &Blocks) -> Vec<String> {
     let of_cluster = |cluster: &Cluster| match cluster.neurons {
         1 => vec![cluster.name.clone()],
         count => (1..=count).map(|number| format!("{} {number}", cluster.name)).collect(),
@@ -151,10 +316,10 @@ pub(crate) fn cluster_neurons(blocks: &Blocks) -> Vec<String> {
 }
 
 /// Names all parameters of a layout.
-pub(crate) fn parameters(
+fn parameters(
     blocks: &Blocks,
     layout: BlockLayout<'_>,
-    ends: Ends<'_>,
+    ends: &NetworkEnds<'_>,
     [weights, leaks]: [[f64; 2]; 2],
 ) -> Vec<Parameter> {
     let clusters = cluster_neurons(blocks);
