@@ -38,3 +38,21 @@ pub(crate) fn registry(parts: &[Part]) -> Result<Registry, Error> {
 pub fn schema() -> Value {
     BUILT_IN.schemas[0].clone()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::schema::SCHEMA;
+
+    /// No kind of part is in the format without its registration, and the registered ones are in the schema.
+    #[test]
+    fn all_parts_of_the_format_are_registered() {
+        let tables = ["Sensor", "Motor", "Wrapper", "Network", "Reward", "Start", "Object", "RobotKind"];
+        let kinds = |schema: &Value, table: &str| schema["$defs"][table]["oneOf"].as_array().unwrap().len();
+        assert!(tables.iter().all(|table| kinds(&SCHEMA, table) == 0));
+        let schema = schema();
+        let count: usize = tables.iter().map(|table| kinds(&schema, table)).sum();
+        assert_eq!(count, built_in().len());
+        assert!(tables.iter().all(|table| kinds(&schema, table) > 4), "{count}");
+    }
+}

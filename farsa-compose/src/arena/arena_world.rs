@@ -6,8 +6,8 @@ use farsa_body::Pose;
 use farsa_num::Stream;
 use farsa_physics::arena::{Lane, World};
 
-use crate::part::Spot;
 use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
+use crate::part::{Moment, Spot};
 
 /// A world of robots in a plane, in which registered parts work.
 pub(crate) trait ArenaWorld: PlanarWorld {
@@ -16,11 +16,11 @@ pub(crate) trait ArenaWorld: PlanarWorld {
     /// Drives a registered motor.
     fn drive(&mut self, motor: &mut dyn PlanarMotor, y: &[f32]);
     /// Begins a registered term.
-    fn begin(&self, term: &mut dyn PlanarTerm);
+    fn begin(&self, term: &mut dyn PlanarTerm, now: &Moment<'_>);
     /// Updates a registered term after a step.
-    fn step_term(&self, term: &mut dyn PlanarTerm);
+    fn step_term(&self, term: &mut dyn PlanarTerm, now: &Moment<'_>);
     /// Computes a registered term.
-    fn value(&self, term: &dyn PlanarTerm) -> f64;
+    fn value(&self, term: &dyn PlanarTerm, now: &Moment<'_>) -> f64;
     /// Draws a pose by a registered placement.
     fn draw(&self, start: &dyn PlanarStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose>;
 }
@@ -34,14 +34,14 @@ macro_rules! arena_world {
             fn drive(&mut self, motor: &mut dyn PlanarMotor, y: &[f32]) {
                 motor.drive(y, self);
             }
-            fn begin(&self, term: &mut dyn PlanarTerm) {
-                term.start(self);
+            fn begin(&self, term: &mut dyn PlanarTerm, now: &Moment<'_>) {
+                term.start(self, now);
             }
-            fn step_term(&self, term: &mut dyn PlanarTerm) {
-                term.step(self);
+            fn step_term(&self, term: &mut dyn PlanarTerm, now: &Moment<'_>) {
+                term.step(self, now);
             }
-            fn value(&self, term: &dyn PlanarTerm) -> f64 {
-                term.value(self)
+            fn value(&self, term: &dyn PlanarTerm, now: &Moment<'_>) -> f64 {
+                term.value(self, now)
             }
             fn draw(&self, start: &dyn PlanarStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose> {
                 start.pose(self, spot, stream)

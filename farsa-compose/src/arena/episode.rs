@@ -10,14 +10,16 @@ use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
 use farsa_view::{Channel, Schema};
 
+use crate::arena::field::Field;
 use crate::arena::registered::PartOfPlanar;
 use crate::arena::scene::Scene;
 use crate::arena::setup::Setup;
-use crate::arena::term::{Numbers, Rows, Term};
+use crate::arena::term::Term;
 use crate::check::source::Source;
 use crate::composed_task::Body;
-use crate::document::Ending;
-use crate::part::PartScene;
+use crate::document::{Document, Ending};
+use crate::part::moment::Stock;
+use crate::part::{Moment, PartScene};
 use crate::parts::agents::Agents;
 use crate::parts::network_spec::NetworkSpec;
 use crate::parts::noise_streams::NoiseStreams;
@@ -29,16 +31,10 @@ use crate::sensors::infrared::InfraredSensor;
 pub(crate) struct ArenaEpisode {
     setup: Setup,
     agents: Agents,
-    /// Pose of each robot at the start, and position in the previous step [m].
-    started: Vec<Pose>,
-    before: Vec<[f64; 2]>,
     /// Current poses.
     poses: Vec<Pose>,
-    /// True if a term depends on the previous step.
-    looks_back: bool,
-    /// True if a term is registered.
-    registered: bool,
-    numbers: Vec<Numbers>,
+    /// True if a term has a state that each step updates.
+    has_state: bool,
     /// Terms of each step, and terms of the last step only.
     measured: [Vec<usize>; 2],
 }
@@ -46,22 +42,14 @@ pub(crate) struct ArenaEpisode {
 impl ArenaEpisode {
     pub(crate) fn new(setup: Setup, agents: Agents) -> Self {
         let robots = setup.members.len();
-        let time_step = agents.document.world.time_step;
-        let numbers = setup.scene.robots.iter();
-        let numbers =
-            numbers.map(|robot| Numbers { wheel_speed: robot.max_wheel_speed, radius: robot.radius, time_step });
         let of_time = |late| {
             let tallies = agents.ledger.tallies.iter().enumerate();
             tallies.filter(|(_, tally)| tally.late == late).map(|(number, _)| number).collect()
         };
         Self {
             measured: [false, true].map(of_time),
-            started: vec![Pose::planar([0.0; 2], 0.0); robots],
-            before: vec![[0.0; 2]; robots],
             poses: vec![Pose::planar([0.0; 2], 0.0); robots],
-            looks_back: setup.terms.iter().any(Term::looks_back),
-            registered: setup.terms.iter().any(Term::is_registered),
-            numbers: numbers.collect(),
+            has_state: setup.terms.iter().any(Term::has_state),
             setup,
             agents,
         }
@@ -99,45 +87,19 @@ impl ArenaEpisode {
     /// Measures the terms of each step, or the late ones.
     #[inline(always)]
     fn measure<W: ArenaWorld>(&mut self, world: &W, late: bool) {
-        if self.setup.moving {
-            self.setup.terms.iter_mut().for_each(|term| term.locate(world));
-        }
-        for index in 0..self.measured[usize::from(late)].len() {
-            let number = self.measured[usize::from(late)][index];
-            let Setup { members, terms, .. } = &self.setup;
-            let term = &terms[number];
+        let Self { setup: Setup { terms, foraging, members, .. }, agents, poses, measured, .. } = self;
+        let Agents { document, spec, ledger, x, y, present, .. } = agents;
+        let now = moment(document, spec, ledger.steps, [x, y], foraging.as_ref(), &poses[..*present]);
+        for number in &measured[usize::from(late)] {
+            let term = &terms[*number];
             // The mean of one robot is its value.
-            let value = if let ([member], [pose], [numbers]) = (&members[..], &self.poses[..], &self.numbers[..]) {
-                term.quick(world, &member.parts, pose, numbers).unwrap_or_else(|| self.value(world, term, 0))
+            let value = if members.len() == 1 {
+                term.value(world, &now, 0)
             } else {
-                self.mean(world, term, &self.agents.ledger.tallies[number])
+                mean(world, term, &ledger.tallies[*number], &now)
             };
-            self.agents.ledger.count(number, value);
+            ledger.count(*number, value);
         }
-        // Terms that look back are never late, so the late pass may find the positions already updated.
-        if self.looks_back && !late {
-            for (before, pose) in self.before.iter_mut().zip(&self.poses) {
-                *before = [0, 1].map(|k| f64::from(pose.position[k]));
-            }
-        }
-    }
-
-    /// Computes the mean of a term over its robots.
-    fn mean<W: ArenaWorld>(&self, world: &W, term: &Term, tally: &Tally) -> f64 {
-        if term.is_of_team() {
-            return self.value(world, term, 0);
-        }
-        let mut value = 0.0;
-        let robots = self.setup.members.iter().zip(&self.poses).zip(&self.numbers).take(self.agents.present);
-        for (robot, ((member, pose), numbers)) in robots.enumerate() {
-            let quick = term.quick(world, &member.parts, pose, numbers);
-            let share = quick.unwrap_or_else(|| self.value(world, term, robot));
-            let share = tally.share(robot, share);
-            // 0 + x would turn -0 into 0, so the sum starts with the first share.
-            value = if robot == 0 { share } else { value + share };
-        }
-        // Shares outside the mean are 0, so the divisor is the number of robots in the mean.
-        value / tally.robots()
     }
 
     /// Ends the trial and returns its reward.
@@ -147,44 +109,16 @@ impl ArenaEpisode {
         self.agents.ledger.conclude()
     }
 
-    /// Returns a term of one robot.
-    #[inline]
-    fn value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
-        if term.is_formula() { self.formula_value(world, term, robot) } else { self.measure_value(world, term, robot) }
-    }
-
-    /// Returns a measure of one robot.
-    #[inline(never)]
-    fn measure_value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
-        term.value(world, &self.setup.members[robot].parts, (&self.rows(), robot), &self.numbers[robot])
-    }
-
-    /// Returns a formula of one robot. Separate, because its stack would slow down other terms.
-    #[inline(never)]
-    fn formula_value<W: ArenaWorld>(&self, world: &W, term: &Term, robot: usize) -> f64 {
-        let of = |robot: usize| (&self.setup.members[robot].parts, &self.numbers[robot]);
-        term.formula_value(world, (&self.rows(), robot), of)
-    }
-
-    /// Returns the values that measures read.
-    #[inline(always)]
-    fn rows(&self) -> Rows<'_> {
-        let Self { setup, agents, started, before, poses, .. } = self;
-        let (inputs, outputs) = (agents.spec.inputs.len(), agents.spec.outputs.len());
-        let field = setup.foraging.as_ref().map(|(_, field)| field);
-        let steps = [agents.ledger.steps, agents.document.episode.steps];
-        let poses = &poses[..agents.present];
-        Rows { x: &agents.x, y: &agents.y, inputs, outputs, started, before, poses, field, steps }
-    }
-
     /// Computes the current value of a late term.
     fn late_value<W: ArenaWorld>(&self, world: &W, number: usize) -> f64 {
-        let (term, tally) = (&self.setup.terms[number], &self.agents.ledger.tallies[number]);
+        let Self { setup: Setup { terms, foraging, .. }, agents, poses, .. } = self;
+        let Agents { document, spec, ledger, x, y, present, .. } = agents;
+        let now = moment(document, spec, ledger.steps, [x, y], foraging.as_ref(), &poses[..*present]);
+        let (term, tally) = (&terms[number], &ledger.tallies[number]);
         if term.is_of_team() {
-            return self.value(world, term, 0);
+            return term.value(world, &now, 0);
         }
-        (0..self.agents.present).map(|robot| tally.share(robot, self.value(world, term, robot))).sum::<f64>()
-            / tally.robots()
+        (0..*present).map(|robot| tally.share(robot, term.value(world, &now, robot))).sum::<f64>() / tally.robots()
     }
 
     /// Returns true for a robot that takes part and is not dead.
@@ -245,6 +179,45 @@ impl ArenaEpisode {
     }
 }
 
+/// Returns the values that terms read.
+#[inline(always)]
+fn moment<'m>(
+    document: &Document,
+    spec: &NetworkSpec,
+    steps: u32,
+    [x, y]: [&'m [f32]; 2],
+    foraging: Option<&'m (BodyId, Field)>,
+    poses: &'m [Pose],
+) -> Moment<'m> {
+    Moment {
+        steps,
+        longest: document.episode.steps,
+        time_step: document.world.time_step,
+        poses,
+        x,
+        y,
+        inputs: spec.inputs.len(),
+        outputs: spec.outputs.len(),
+        markers: &[],
+        stock: foraging.map(|(_, field)| field as &dyn Stock),
+    }
+}
+
+/// Computes the mean of a term over its robots.
+fn mean<W: ArenaWorld>(world: &W, term: &Term, tally: &Tally, now: &Moment<'_>) -> f64 {
+    if term.is_of_team() {
+        return term.value(world, now, 0);
+    }
+    let mut value = 0.0;
+    for robot in 0..now.poses.len() {
+        let share = tally.share(robot, term.value(world, now, robot));
+        // 0 + x would turn -0 into 0, so the sum starts with the first share.
+        value = if robot == 0 { share } else { value + share };
+    }
+    // Shares outside the mean are 0, so the divisor is the number of robots in the mean.
+    value / tally.robots()
+}
+
 impl Body for ArenaEpisode {
     fn agents(&self) -> &Agents {
         &self.agents
@@ -281,6 +254,7 @@ impl Body for ArenaEpisode {
             robot,
             files: None,
             rule: None,
+            sensors: &[],
             path: "",
             source: &source,
         }));
@@ -295,15 +269,16 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
         let mut streams = NoiseStreams::of_episode(id, self.agents.document.episode.steps);
         for (robot, member) in members.iter_mut().enumerate() {
             member.equipment.begin(&mut streams);
-            self.started[robot] = world.pose(member.parts.body);
-            self.before[robot] = [0, 1].map(|k| f64::from(self.started[robot].position[k]));
-        }
-        for term in terms {
-            term.begin(world);
+            self.poses[robot] = world.pose(member.parts.body);
         }
         if let Some((nest, field)) = foraging {
             let [x, y, _] = world.pose(*nest).position;
             field.begin([x, y].map(f64::from));
+        }
+        let Agents { document, spec, ledger, x, y, .. } = &self.agents;
+        let now = moment(document, spec, ledger.steps, [x, y], foraging.as_ref(), &self.poses);
+        for term in terms.iter_mut() {
+            term.begin(world, &now);
         }
     }
 
@@ -333,8 +308,13 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
                 field.step(robot, [0, 1].map(|k| f64::from(pose.position[k])));
             }
         }
-        if self.registered {
-            self.setup.terms.iter_mut().for_each(|term| term.step(world));
+        if self.has_state {
+            let Setup { terms, foraging, .. } = &mut self.setup;
+            let Agents { document, spec, ledger, x, y, .. } = &self.agents;
+            let now = moment(document, spec, ledger.steps, [x, y], foraging.as_ref(), &self.poses);
+            for term in terms.iter_mut() {
+                term.step(world, &now);
+            }
         }
         // Food changes before the terms are measured, so a delivery counts in the same step.
         self.measure(world, false);

@@ -1,5 +1,7 @@
 //! Food on a field, and robots that forage on it.
 
+use crate::part::moment::Stock;
+
 /// State of a forager.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Forager {
@@ -122,6 +124,28 @@ impl Field {
     /// Gets the number of dead robots.
     pub(crate) fn deaths(&self) -> usize {
         self.robots.iter().filter(|forager| !forager.alive).count()
+    }
+}
+
+impl Stock for Field {
+    fn collected(&self) -> u32 {
+        Self::collected(self)
+    }
+
+    fn carried(&self) -> u32 {
+        Self::carried(self)
+    }
+
+    fn lost(&self) -> u32 {
+        Self::lost(self)
+    }
+
+    fn deaths(&self) -> usize {
+        Self::deaths(self)
+    }
+
+    fn energy(&self, robot: usize) -> Option<(f64, bool)> {
+        self.robots().get(robot).map(|forager| (forager.energy, forager.alive))
     }
 }
 

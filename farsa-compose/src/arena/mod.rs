@@ -8,10 +8,6 @@ pub(crate) mod episode;
 pub(crate) mod field;
 /// Field in recordings and animations.
 mod field_view;
-/// Spread and clusters of robots.
-pub(crate) mod gathering;
-/// Measures of terms.
-pub(crate) mod measure;
 /// Registered sensors and motors.
 mod registered;
 /// Arena, and the bodies that names refer to.

@@ -11,11 +11,11 @@ use farsa_lab::Error;
 use crate::arena::ArenaWorld;
 use crate::arena::field::Forager;
 use crate::arena::scene::{Scene, Thing, flat, one_body, within_walls};
-use crate::check::completed::builder;
+use crate::check::completed::{builder, channels_of};
 use crate::check::source::Source;
-use crate::document::{MotorKind, Placing, SensorKind};
+use crate::document::{MotorKind, Placing, RewardKind, SensorKind};
 use crate::part::PartScene;
-use crate::part::definition::{Build, Given};
+use crate::part::definition::Build;
 use crate::part::files::Files;
 use crate::part::named_point::NamedPoint;
 use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
@@ -98,6 +98,8 @@ pub(crate) struct PartOfPlanar<'s> {
     pub(crate) robot: usize,
     /// Files of the document, for sensors.
     pub(crate) files: Option<&'s Files<'s>>,
+    /// Sensors with their channels, for terms.
+    pub(crate) sensors: &'s [(String, [usize; 2])],
     /// Rule of a placement.
     pub(crate) rule: Option<RuleOf<'s>>,
     /// Path of the part in the document.
@@ -218,6 +220,55 @@ impl Surroundings for PartOfPlanar<'_> {
         rule.earlier_choice(name, points, self.source)
     }
 
+    fn robot(&self) -> usize {
+        self.robot
+    }
+
+    fn moves(&self, body: BodyId) -> bool {
+        let is_robot = (0..self.scene.robots.len()).any(|robot| self.scene.parts(robot).body == body);
+        self.scene.pulls || !self.scene.blocks.is_empty() || is_robot
+    }
+
+    fn size(&self) -> [f64; 2] {
+        self.scene.size
+    }
+
+    fn cylinder(&self, name: &str, key: &str) -> Result<(BodyId, f64), Error> {
+        let path = format!("{}/{key}", self.path);
+        let thing = self.scene.thing(name, &path, self.source)?;
+        let hint = if thing == Thing::Wall { "; the term `touch` counts walls" } else { "" };
+        thing.solid().ok_or_else(|| self.source.wrong(&path, format!("`{name}` is no cylinder{hint}")))
+    }
+
+    fn areas(&self, name: &str, key: &str) -> Result<Vec<Area>, Error> {
+        let path = format!("{}/{key}", self.path);
+        let area = |thing: Thing| match thing {
+            Thing::Area(area) => Ok(area),
+            _ => Err(self.source.wrong(&path, format!("`{name}` is no disc or rectangle"))),
+        };
+        self.scene.things(name, &path, self.source)?.into_iter().map(area).collect()
+    }
+
+    fn group(&self, name: &str, key: &str) -> Result<[usize; 2], Error> {
+        self.scene.groups.find(name, &format!("{}/{key}", self.path), self.source)
+    }
+
+    fn sensor_channels(&self, name: &str, key: &str) -> Result<[usize; 2], Error> {
+        channels_of(self.sensors, name, &format!("{}/{key}", self.path), self.source)
+    }
+
+    fn target_with_reach(&self, name: &str, key: &str) -> Result<(NamedPoint, f64), Error> {
+        Ok((self.target(name, key)?, 0.0))
+    }
+
+    fn part_or_thing(&self, body: Option<&String>, point: [f64; 3]) -> Result<NamedPoint, Error> {
+        Ok(NamedPoint::Body(self.point(body, point)?))
+    }
+
+    fn one_joint(&self, name: &str) -> Result<JointId, Error> {
+        wheel(name, &self.scene.parts(self.robot), self.path, self.source)
+    }
+
     fn shows(&self) -> bool {
         true
     }
@@ -308,11 +359,21 @@ pub(crate) fn motor(given: &MotorKind, scene: PartOfPlanar<'_>) -> Result<Regist
     Ok(RegisteredMotor { rest: (0..motor.channels()).map(|channel| part.rest(channel)).collect(), motor })
 }
 
+/// Rejects a term for robots with joints.
+pub(crate) fn check_term(given: &RewardKind, path: &str, source: &Source) -> Result<(), Error> {
+    let build = builder((&given.kind, path, source), WITH_JOINTS, |build| match build {
+        Build::Term((build, _), _) => Some(*build),
+        _ => None,
+    });
+    build.map(|_| ())
+}
+
 /// Builds a registered term in a scene.
-pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarTerm>, Error> {
+pub(crate) fn term(given: &RewardKind, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarTerm>, Error> {
+    let RewardKind { kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
     let build = builder((kind, path, source), WITH_JOINTS, |build| match build {
-        Build::Term((build, _)) => Some(*build),
+        Build::Term((build, _), _) => Some(*build),
         _ => None,
     });
     let build = build?;

@@ -9,6 +9,7 @@ use crate::check::source::Source;
 use crate::document::{Collisions, Document, Engine, Object, Robot, Shape};
 use crate::part;
 use crate::part::definition::Maker;
+use crate::parts::constant_fitness::pulls;
 use crate::parts::groups::Groups;
 
 /// A named thing.
@@ -77,6 +78,8 @@ pub(crate) struct Scene {
     standing: usize,
     /// True with the section `foraging`.
     pub(crate) has_food: bool,
+    /// True for robots that can hold something.
+    pub(crate) pulls: bool,
 }
 
 /// A movable box.
@@ -193,7 +196,8 @@ impl Scene {
             }
         }
         let has_food = document.foraging.is_some();
-        Ok(Self { robots, groups, size: world.size, things, standing, arena, blocks, has_food })
+        let pulls = pulls(document, &source.registry);
+        Ok(Self { robots, groups, size: world.size, things, standing, arena, blocks, has_food, pulls })
     }
 
     /// Returns the thing of a name at a path of the document.

@@ -17,7 +17,6 @@ use crate::part::Area;
 use crate::part::files::Files;
 use crate::parts::agents::Agents;
 use crate::parts::conditions::FormulaConditions;
-use crate::parts::constant_fitness::pulls;
 use crate::parts::equipment::Equipment;
 use crate::parts::ledger::Ledger;
 use crate::parts::network_spec::{NetworkSpec, Spans};
@@ -33,8 +32,6 @@ pub(crate) struct Setup {
     pub(crate) members: Vec<Member>,
     /// Nest and field, if any.
     pub(crate) foraging: Option<(BodyId, Field)>,
-    /// True if things can move during a trial.
-    pub(crate) moving: bool,
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
@@ -73,7 +70,7 @@ impl Setup {
             let make = |kind, path: &str| {
                 registered::sensor(
                     kind,
-                    PartOfPlanar { scene: &scene, robot, files: Some(&files), rule: None, path, source },
+                    PartOfPlanar { scene: &scene, robot, files: Some(&files), rule: None, sensors: &[], path, source },
                 )
             };
             let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
@@ -81,7 +78,7 @@ impl Setup {
             let make = |kind, path: &str| {
                 registered::motor(
                     kind,
-                    PartOfPlanar { scene: &scene, robot, files: Some(&files), rule: None, path, source },
+                    PartOfPlanar { scene: &scene, robot, files: Some(&files), rule: None, sensors: &[], path, source },
                 )
             };
             let motors = Part::list("motors", motors, make, &mut budget, source)?;
@@ -100,20 +97,15 @@ impl Setup {
             |quantity: &Quantity, path: &str| Ok((Term::from_quantity(quantity, path, channels, &scene, source)?, 0));
         let conditions = FormulaConditions::new(&document, channels, &mut terms, &mut make, source)?;
         let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
-        let of_foraging = terms.iter().position(Term::of_foraging).map(|number| conditions.path_of(number));
         let ledger = {
             let abouts: Vec<_> = terms[document.reward.len()..].iter().map(Term::about).collect();
             Ledger::new(&document, &of_steps, (conditions, &abouts), &scene.groups, source)?
         };
-        let foraging = foraging(&document, &scene, of_foraging, source)?;
-        // Positions of things are constant in a trial unless robots carry or push them, or a robot is the thing.
-        let moving = pulls(&document, &source.registry)
-            || !scene.blocks.is_empty()
-            || terms.iter().any(|term| term.is_about_robot(&scene));
+        let foraging = foraging(&document, &scene, source)?;
         let starting = Starting::new(&document, &scene, source)?;
         let trainee = Trainee::new(&document, &spec, source)?;
         let agents = Agents { trainee, ..Agents::new(document, spec, ledger, scene.groups.clone(), &source.registry) };
-        Ok((Self { scene, members, foraging, moving, starting, terms }, agents))
+        Ok((Self { scene, members, foraging, starting, terms }, agents))
     }
 }
 
@@ -133,17 +125,12 @@ fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source
     Ok(())
 }
 
-/// Builds the nest and the field of a document. `term` is the path of a term that needs them.
-fn foraging(
-    document: &Document,
-    scene: &Scene,
-    term: Option<String>,
-    source: &Source,
-) -> Result<Option<(BodyId, Field)>, Error> {
+/// Builds the nest and the field of a document.
+fn foraging(document: &Document, scene: &Scene, source: &Source) -> Result<Option<(BodyId, Field)>, Error> {
     let Some(foraging) = &document.foraging else {
-        let ending = document.episode.ends.contains(&Ending::Death).then(|| "/episode/ends".into());
-        return match term.or(ending) {
-            Some(path) => Err(source.wrong(&path, "needs the section `foraging`, which there is not")),
+        let ending = document.episode.ends.contains(&Ending::Death).then_some("/episode/ends");
+        return match ending {
+            Some(path) => Err(source.wrong(path, "needs the section `foraging`, which there is not")),
             None => Ok(None),
         };
     };

@@ -78,7 +78,7 @@ impl Starting {
             let path = format!("/start/{index}");
             let placed: Vec<BodyId> = rules.iter().flat_map(|rule| rule.bodies.iter().copied()).collect();
             let of = Some(RuleOf { document, number: index, placed: &placed });
-            let part = PartOfPlanar { scene, robot: 0, files: None, rule: of, path: &path, source };
+            let part = PartOfPlanar { scene, robot: 0, files: None, rule: of, sensors: &[], path: &path, source };
             let made = registered::start(&start.how, part)?;
             let facts = source.registry.start(&start.how);
             let is_one_place = facts.as_ref().is_some_and(|facts| facts.is_one_place());
@@ -118,7 +118,7 @@ impl Starting {
         let others: Vec<BodyId> = robots.iter().copied().filter(|body| !placed(body)).collect();
         if !others.is_empty() {
             let anywhere = Placing { at: "anywhere".into(), keys: Map::new() };
-            let part = PartOfPlanar { scene, robot: 0, files: None, rule: None, path: "/start", source };
+            let part = PartOfPlanar { scene, robot: 0, files: None, rule: None, sensors: &[], path: "/start", source };
             rules.push(of_robots(others, registered::start(&anywhere, part)?));
         }
         let moved = |body: &BodyId| rules.iter().any(|rule| rule.bodies.contains(body));

@@ -25,8 +25,7 @@ fn complete_keys(
 /// # Errors
 /// [`Error::Setting`] for keys that the term refuses.
 pub(crate) fn complete_term(term: &mut RewardKind, path: &str, source: &Source) -> Result<(), Error> {
-    let RewardKind::Registered { kind, keys } = term else { return Ok(()) };
-    complete_keys("term", kind, keys, (path, source))
+    complete_keys("term", &term.kind, &mut term.keys, (path, source))
 }
 
 /// Adds the defaults of registered parts to a document.
@@ -105,4 +104,16 @@ pub(crate) fn builder<'r, T>(
     build: impl Fn(&'r Build) -> Option<Option<T>>,
 ) -> Result<T, Error> {
     source.registry.find(kind, build).flatten().ok_or_else(|| source.wrong(path, other))
+}
+
+/// Returns the first channel of a sensor and the one after the last.
+pub(crate) fn channels_of(
+    sensors: &[(String, [usize; 2])],
+    name: &str,
+    path: &str,
+    source: &Source,
+) -> Result<[usize; 2], Error> {
+    let names = sensors.iter().map(|(name, _)| name.as_str());
+    let number = source.position(names, ("sensor", name), path)?;
+    Ok(sensors[number].1)
 }

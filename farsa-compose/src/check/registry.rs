@@ -6,14 +6,15 @@ use farsa_lab::Error;
 use farsa_lab::advanced::Part;
 use serde_json::{Value, json};
 
-use crate::check::schema::{SCHEMA, close, scene_schema};
-use crate::document::{MotorKind, NetworkKind, Placing, RobotKind, SensorKind};
+use crate::check::schema::{SCHEMA, admit_bare_formulas, close, scene_schema};
+use crate::document::{MotorKind, NetworkKind, Placing, RewardKind, RobotKind, SensorKind};
 use crate::name::is_name;
 use crate::part::definition::{Build, Definition, Maker};
 use crate::part::motor::AnyMotor;
 use crate::part::network::AnyNetworkPart;
 use crate::part::sensor::AnySensor;
 use crate::part::start::AnyStart;
+use crate::part::term::AnyTerm;
 
 /// Registered parts.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +29,7 @@ fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
     match build {
         Build::Sensor(..) => ("Sensor", "kind", "sensor"),
         Build::Motor(..) => ("Motor", "kind", "motor"),
-        Build::Term(_) => ("Reward", "kind", "term"),
+        Build::Term(..) => ("Reward", "kind", "term"),
         Build::Start(..) => ("Start", "at", "placement"),
         Build::Wrapper(_) => ("Wrapper", "kind", "wrapper"),
         Build::Network(_) => ("Network", "kind", "network"),
@@ -66,6 +67,7 @@ impl Registry {
                 add_branch(&mut schema, definition, [kinds, tag]).map_err(|why| wrong(&why))?;
             }
         }
+        admit_bare_formulas(&mut schema);
         let scene = scene_schema(&schema);
         let definitions = self.definitions.iter().cloned().chain(definitions).collect();
         Ok(Self { definitions: Arc::new(definitions), schemas: Arc::new([schema, scene]) })
@@ -98,6 +100,12 @@ impl Registry {
     pub(crate) fn network(&self, network: &NetworkKind) -> Option<Result<Box<dyn AnyNetworkPart>, Error>> {
         let read = self.find(&network.kind, |build| if let Build::Network(read) = build { Some(*read) } else { None });
         read.map(|read| read(&network.keys))
+    }
+
+    /// Reads the facts of a term.
+    pub(crate) fn term(&self, term: &RewardKind) -> Option<Box<dyn AnyTerm>> {
+        let read = self.find(&term.kind, |build| if let Build::Term(_, read) = build { Some(*read) } else { None });
+        read?(&term.keys).ok()
     }
 
     /// Reads the facts of a placement.

@@ -18,7 +18,7 @@ fn of_documents() -> Value {
 /// Lists of terms and conditions, whose items may be formulas.
 const WITH_FORMULAS: [&str; 4] = ["reward", "success", "end", "failure"];
 
-/// Admits a text instead of a list of terms or conditions and of each item, and a term with a formula and no kind.
+/// Admits a text instead of a list of terms or conditions and of each item.
 fn admit_formulas(schema: &mut Value) {
     let text = serde_json::json!({ "type": "string", "maxLength": 2000, "description": "A formula." });
     for list in WITH_FORMULAS {
@@ -30,6 +30,10 @@ fn admit_formulas(schema: &mut Value) {
         let list = serde_json::json!({ "type": kind, "items": items });
         part.insert("anyOf".into(), serde_json::json!([list, text]));
     }
+}
+
+/// Admits a term with a formula and no kind.
+pub(crate) fn admit_bare_formulas(schema: &mut Value) {
     let branches = schema.pointer_mut("/$defs/Reward/oneOf").and_then(Value::as_array_mut).into_iter().flatten();
     for branch in branches.filter(|branch| branch.pointer("/properties/kind/const") == Some(&"formula".into())) {
         branch["required"] = serde_json::json!(["formula"]);

@@ -5,7 +5,6 @@ use farsa_num::{Domain, Scalar, Stream, exp, ln, sin_cos, tanh};
 
 use crate::built_in::registry;
 use crate::check::source::Source;
-use crate::document::RewardKind;
 use crate::formula::channels::ChannelNames;
 use crate::formula::compile::{CompiledCondition, Formula, Quantity, Scope};
 
@@ -193,12 +192,12 @@ fn joined([a, b]: &[Drawn; 2], operator: &str, power: u8, value: fn(f64, f64) ->
 /// Returns the value of a quantity, as in the list.
 fn known(quantity: &Quantity) -> f64 {
     let name = match quantity {
-        Quantity::Measure(RewardKind::Distance { .. }, _) => "distance(lamp)",
-        Quantity::Measure(RewardKind::Displacement { .. }, _) => "displacement",
-        Quantity::Measure(RewardKind::Time {}, _) => "time",
-        Quantity::Measure(RewardKind::Speed { .. }, _) => "speed(robot)",
-        Quantity::Measure(RewardKind::Upright { .. }, _) => "upright(body = hand)",
-        Quantity::Measure(RewardKind::Near { .. }, _) => "near('the lamp', 0.1 m)",
+        Quantity::Measure(kind, _) if kind.kind == "distance" => "distance(lamp)",
+        Quantity::Measure(kind, _) if kind.kind == "displacement" => "displacement",
+        Quantity::Measure(kind, _) if kind.kind == "time" => "time",
+        Quantity::Measure(kind, _) if kind.kind == "speed" => "speed(robot)",
+        Quantity::Measure(kind, _) if kind.kind == "upright" => "upright(body = hand)",
+        Quantity::Measure(kind, _) if kind.kind == "near" => "near('the lamp', 0.1 m)",
         Quantity::Channels(channels) if channels.value(&[0.0; 4], &[1.0; 2]) == 1.0 => "'wheels left'",
         _ => "max(infrared)",
     };

@@ -18,7 +18,8 @@ use crate::jointed::SpatialWorld;
 use crate::jointed::registered::PartOfSpatial;
 use crate::jointed::scene::Scene;
 use crate::jointed::setup::Setup;
-use crate::part::PartScene;
+use crate::jointed::term::Term;
+use crate::part::{Moment, PartScene};
 use crate::parts::agents::Agents;
 use crate::parts::noise_streams::NoiseStreams;
 use crate::sensors::eye::camera_of;
@@ -33,6 +34,8 @@ pub(crate) struct JointedEpisode {
     /// Schema of the drawing, and the bodies that move in it.
     drawn: Schema,
     shown: Vec<BodyId>,
+    /// True if a term has a state that each step updates.
+    has_state: bool,
 }
 
 /// Speed that shows a failure of the dynamics [rad/s or m/s].
@@ -44,7 +47,8 @@ impl JointedEpisode {
         let drawn = drawn(&setup, &agents.spec.sensors);
         let bodies = setup.scene.robot.segments.len();
         let shown = drawn.shown().filter(|body| body.index() < bodies).collect();
-        Self { setup, agents, markers, drawn, shown }
+        let has_state = setup.terms.iter().any(Term::has_state);
+        Self { setup, agents, markers, drawn, shown, has_state }
     }
 
     pub(crate) fn scene(&self) -> &Scene {
@@ -59,13 +63,11 @@ impl JointedEpisode {
 
     /// Measures the terms of each step, or the late ones.
     fn measure<W: SpatialWorld>(&mut self, world: &W, late: bool) {
-        for (number, term) in self.setup.terms.iter_mut().enumerate() {
+        for (number, term) in self.setup.terms.iter().enumerate() {
             if self.agents.ledger.tallies[number].late != late {
                 continue;
             }
-            let value = term.value(world, &self.markers, &self.agents);
-            // Stored after the measurement, which compares with the previous step.
-            term.remember(world, &self.markers);
+            let value = term.value(world, &moment(&self.agents, &self.markers));
             self.agents.ledger.count(number, value);
         }
     }
@@ -103,6 +105,22 @@ fn drawn(setup: &Setup, sensors: &[(String, [usize; 2])]) -> Schema {
         }
     }
     schema
+}
+
+/// Returns the values that terms read.
+fn moment<'m>(agents: &'m Agents, markers: &'m [[f32; 3]]) -> Moment<'m> {
+    Moment {
+        steps: agents.ledger.steps,
+        longest: agents.document.episode.steps,
+        time_step: agents.document.world.time_step,
+        poses: &[],
+        x: &agents.x,
+        y: &agents.y,
+        inputs: agents.spec.inputs.len(),
+        outputs: agents.spec.outputs.len(),
+        markers,
+        stock: None,
+    }
 }
 
 impl Body for JointedEpisode {
@@ -147,6 +165,7 @@ impl Body for JointedEpisode {
             scene: &self.setup.scene,
             wiring: None,
             rule: None,
+            sensors: &[],
             path: "",
             source: &source,
         }));
@@ -161,8 +180,9 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         let Setup { equipment, terms, .. } = &mut self.setup;
         equipment.begin(&mut streams);
         equipment.sensors.iter_mut().for_each(|sensor| sensor.kind_mut().look(&self.markers));
-        for term in terms {
-            term.begin(world, &self.markers);
+        let now = moment(&self.agents, &self.markers);
+        for term in terms.iter_mut() {
+            term.begin(world, &now);
         }
     }
 
@@ -180,7 +200,10 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
 
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.agents.ledger.steps += 1;
-        self.setup.terms.iter_mut().for_each(|term| term.step(world));
+        if self.has_state {
+            let now = moment(&self.agents, &self.markers);
+            self.setup.terms.iter_mut().for_each(|term| term.step(world, &now));
+        }
         self.measure(world, false);
         self.agents.ledger.count_conditions();
         // Terms may be finite in a world that is not, so the bodies are checked separately.
@@ -217,7 +240,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         }
         let mut scalars: Vec<f64> = self.setup.joints.iter().map(|joint| f64::from(world.position(*joint))).collect();
         for (tally, term) in ledger.shown().iter().zip(&self.setup.terms) {
-            scalars.push(if tally.late { term.value(world, &self.markers, &self.agents) } else { tally.last });
+            scalars.push(if tally.late { term.value(world, &moment(&self.agents, &self.markers)) } else { tally.last });
         }
         scalars.push(ledger.earned());
         recorder.scalars(&scalars);

@@ -8,13 +8,13 @@ use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
 
-use crate::check::completed::builder;
+use crate::check::completed::{builder, channels_of};
 use crate::check::source::Source;
-use crate::document::{MotorKind, Placing, SensorKind};
+use crate::document::{MotorKind, Placing, RewardKind, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::scene::Scene;
 use crate::part::PartScene;
-use crate::part::definition::{Build, Given};
+use crate::part::definition::Build;
 use crate::part::files::Files;
 use crate::part::named_point::NamedPoint;
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
@@ -78,6 +78,8 @@ pub(crate) struct PartOfSpatial<'s> {
     pub(crate) scene: &'s Scene,
     /// Actuators of motors, while motors are built.
     pub(crate) wiring: Option<&'s RefCell<Wiring>>,
+    /// Sensors with their channels, for terms.
+    pub(crate) sensors: &'s [(String, [usize; 2])],
     /// Rule of a placement.
     pub(crate) rule: Option<RuleOf<'s>>,
     /// Path of the part in the document.
@@ -183,6 +185,46 @@ impl Surroundings for PartOfSpatial<'_> {
         rule.earlier_choice(name, points, self.source)
     }
 
+    fn robot(&self) -> usize {
+        0
+    }
+
+    fn moves(&self, _: BodyId) -> bool {
+        true
+    }
+
+    fn size(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    fn cylinder(&self, _: &str, _: &str) -> Result<(BodyId, f64), Error> {
+        Err(self.error(ON_WHEELS.into()))
+    }
+
+    fn areas(&self, _: &str, _: &str) -> Result<Vec<Area>, Error> {
+        Err(self.error(ON_WHEELS.into()))
+    }
+
+    fn group(&self, _: &str, _: &str) -> Result<[usize; 2], Error> {
+        Err(self.error(ON_WHEELS.into()))
+    }
+
+    fn sensor_channels(&self, name: &str, key: &str) -> Result<[usize; 2], Error> {
+        channels_of(self.sensors, name, &format!("{}/{key}", self.path), self.source)
+    }
+
+    fn target_with_reach(&self, name: &str, key: &str) -> Result<(NamedPoint, f64), Error> {
+        self.scene.point_named(&name.to_owned(), &format!("{}/{key}", self.path), self.source)
+    }
+
+    fn part_or_thing(&self, body: Option<&String>, point: [f64; 3]) -> Result<NamedPoint, Error> {
+        self.scene.part_or_thing(body, point, self.path, self.source)
+    }
+
+    fn one_joint(&self, name: &str) -> Result<JointId, Error> {
+        self.scene.joint(name, self.path, self.source)
+    }
+
     fn shows(&self) -> bool {
         self.scene.shows
     }
@@ -273,10 +315,11 @@ pub(crate) fn motor(given: &MotorKind, scene: PartOfSpatial<'_>) -> Result<Regis
 }
 
 /// Builds a registered term in a scene.
-pub(crate) fn term(kind: &str, keys: &Given, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialTerm>, Error> {
+pub(crate) fn term(given: &RewardKind, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialTerm>, Error> {
+    let RewardKind { kind, keys } = given;
     let (path, source) = (scene.path, scene.source);
     let build = builder((kind, path, source), ON_WHEELS, |build| match build {
-        Build::Term((_, build)) => Some(*build),
+        Build::Term((_, build), _) => Some(*build),
         _ => None,
     });
     let build = build?;

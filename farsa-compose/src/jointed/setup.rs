@@ -49,12 +49,18 @@ impl Setup {
         let sensors = document.sensors.iter().map(|sensor| (&sensor.kind, &sensor.wrappers[..], sensor.enabled));
         let wiring = RefCell::new(Wiring::new(&scene.robot));
         let make = |kind, path: &str| {
-            registered::sensor(kind, PartOfSpatial { scene: &scene, wiring: Some(&wiring), rule: None, path, source })
+            registered::sensor(
+                kind,
+                PartOfSpatial { scene: &scene, wiring: Some(&wiring), rule: None, sensors: &[], path, source },
+            )
         };
         let sensors = Part::list("sensors", sensors, make, &mut budget, source)?;
         let motors = document.motors.iter().map(|motor| (&motor.kind, &motor.wrappers[..], motor.enabled));
         let make = |kind, path: &str| {
-            registered::motor(kind, PartOfSpatial { scene: &scene, wiring: Some(&wiring), rule: None, path, source })
+            registered::motor(
+                kind,
+                PartOfSpatial { scene: &scene, wiring: Some(&wiring), rule: None, sensors: &[], path, source },
+            )
         };
         let motors = Part::list("motors", motors, make, &mut budget, source)?;
         let wiring = wiring.into_inner();

@@ -8,7 +8,7 @@ use farsa_num::Stream;
 use farsa_physics::articulated::{Lane, World};
 
 use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
-use crate::part::{Spot, Start};
+use crate::part::{Moment, Spot, Start};
 
 /// A world of bodies with joints, in space.
 pub(crate) trait SpatialWorld:
@@ -25,11 +25,11 @@ pub(crate) trait SpatialWorld:
     /// Drives a registered motor.
     fn drive(&mut self, motor: &mut dyn SpatialMotor, y: &[f32]);
     /// Begins a registered term.
-    fn begin(&self, term: &mut dyn SpatialTerm);
+    fn begin(&self, term: &mut dyn SpatialTerm, now: &Moment<'_>);
     /// Updates a registered term after a step.
-    fn step_term(&self, term: &mut dyn SpatialTerm);
+    fn step_term(&self, term: &mut dyn SpatialTerm, now: &Moment<'_>);
     /// Computes a registered term.
-    fn value(&self, term: &dyn SpatialTerm) -> f64;
+    fn value(&self, term: &dyn SpatialTerm, now: &Moment<'_>) -> f64;
     /// Draws the position of a joint by a registered placement.
     fn draw_position(&self, start: &dyn SpatialStart, stream: &mut Stream) -> Option<f32>;
     /// Draws a pose by a registered placement.
@@ -45,14 +45,14 @@ macro_rules! registered_parts {
         fn drive(&mut self, motor: &mut dyn SpatialMotor, y: &[f32]) {
             motor.drive(y, self);
         }
-        fn begin(&self, term: &mut dyn SpatialTerm) {
-            term.start(self);
+        fn begin(&self, term: &mut dyn SpatialTerm, now: &Moment<'_>) {
+            term.start(self, now);
         }
-        fn step_term(&self, term: &mut dyn SpatialTerm) {
-            term.step(self);
+        fn step_term(&self, term: &mut dyn SpatialTerm, now: &Moment<'_>) {
+            term.step(self, now);
         }
-        fn value(&self, term: &dyn SpatialTerm) -> f64 {
-            term.value(self)
+        fn value(&self, term: &dyn SpatialTerm, now: &Moment<'_>) -> f64 {
+            term.value(self, now)
         }
         fn draw_position(&self, start: &dyn SpatialStart, stream: &mut Stream) -> Option<f32> {
             Start::<Self>::position(start, stream)

@@ -59,7 +59,7 @@ impl Starting {
                 return Err(source.wrong(&format!("{path}/at"), why));
             }
             let rule = Some(RuleOf { document, number: index, placed: &[] });
-            let part = PartOfSpatial { scene, wiring: None, rule, path: &path, source };
+            let part = PartOfSpatial { scene, wiring: None, rule, sensors: &[], path: &path, source };
             let made = registered::start(&start.how, part)?;
             if rules.iter().any(|other| other.what == what) {
                 return Err(source.wrong(&format!("{path}/place"), format!("`{}` is placed twice", start.place)));

@@ -18,6 +18,7 @@ use crate::part::object::{
 use crate::part::scene::PartScene;
 use crate::part::sensor::AnySensor;
 use crate::part::start::AnyStart;
+use crate::part::term::AnyTerm;
 use crate::part::wrapper::AnyWrapper;
 
 /// Keys of a part, as the file has them.
@@ -50,7 +51,7 @@ type InWorlds<P, S> = (Option<Building<Box<P>>>, Option<Building<Box<S>>>);
 pub(crate) enum Build {
     Sensor(InWorlds<dyn PlanarSensor, dyn SpatialSensor>, Reading<dyn AnySensor>),
     Motor(InWorlds<dyn PlanarMotor, dyn SpatialMotor>, Reading<dyn AnyMotor>),
-    Term(InWorlds<dyn PlanarTerm, dyn SpatialTerm>),
+    Term(InWorlds<dyn PlanarTerm, dyn SpatialTerm>, Reading<dyn AnyTerm>),
     Start(InWorlds<dyn PlanarStart, dyn SpatialStart>, Reading<dyn AnyStart>),
     Wrapper(Reading<dyn AnyWrapper>),
     Network(Reading<dyn AnyNetworkPart>),

@@ -51,6 +51,8 @@ pub(crate) mod definition;
 pub(crate) mod files;
 /// Settings of a part.
 mod keys;
+/// Moments of a trial.
+pub(crate) mod moment;
 /// Motors.
 pub(crate) mod motor;
 /// A point of a body, or a marker.
@@ -79,6 +81,7 @@ pub(crate) mod wiring;
 pub(crate) mod wrapper;
 
 pub use keys::Keys;
+pub use moment::Moment;
 pub use motor::MotorPart;
 pub use network::{NetworkEnds, NetworkPart, PartNetwork};
 pub use object::{

@@ -15,7 +15,7 @@ use crate::part::object::{
 use crate::part::scene::PartScene;
 use crate::part::sensor::{AnySensor, SensorPart};
 use crate::part::start::{AnyStart, StartPart};
-use crate::part::term::TermPart;
+use crate::part::term::{AnyTerm, TermPart};
 use crate::part::thing::ThingPart;
 use crate::part::wrapper::{AnyWrapper, WrapperPart};
 
@@ -41,6 +41,10 @@ fn any_sensor<P: SensorPart>(given: &Given) -> Result<Box<dyn AnySensor>, Error>
 }
 
 fn any_start<P: StartPart>(given: &Given) -> Result<Box<dyn AnyStart>, Error> {
+    Ok(Box::new(keys::<P>(given)?))
+}
+
+fn any_term<P: TermPart>(given: &Given) -> Result<Box<dyn AnyTerm>, Error> {
     Ok(Box::new(keys::<P>(given)?))
 }
 
@@ -92,17 +96,17 @@ pub fn term<P>(name: &'static str) -> Part
 where
     P: TermPart<Term: PlanarTerm + SpatialTerm>,
 {
-    Definition::part::<P>(name, Build::Term((Some(planar_term_of::<P>), Some(spatial_term_of::<P>))))
+    Definition::part::<P>(name, Build::Term((Some(planar_term_of::<P>), Some(spatial_term_of::<P>)), any_term::<P>))
 }
 
 /// Registers a kind of term for robots on wheels under a name.
 pub fn planar_term<P: TermPart<Term: PlanarTerm>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Term((Some(planar_term_of::<P>), None)))
+    Definition::part::<P>(name, Build::Term((Some(planar_term_of::<P>), None), any_term::<P>))
 }
 
 /// Registers a kind of term for robots with joints under a name.
 pub fn spatial_term<P: TermPart<Term: SpatialTerm>>(name: &'static str) -> Part {
-    Definition::part::<P>(name, Build::Term((None, Some(spatial_term_of::<P>))))
+    Definition::part::<P>(name, Build::Term((None, Some(spatial_term_of::<P>)), any_term::<P>))
 }
 
 /// Registers a kind of placement for all robots under a name.

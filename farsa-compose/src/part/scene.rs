@@ -57,6 +57,26 @@ pub(crate) trait Surroundings {
     fn start_point(&self, at: &[f64], key: &str) -> Result<[f64; 3], Error>;
     /// Returns the number of an earlier rule with a choice among this many points.
     fn earlier_choice(&self, name: &str, points: usize) -> Result<usize, Error>;
+    /// Gets the number of the robot on wheels, from 0.
+    fn robot(&self) -> usize;
+    /// Returns true for a body that can move during a trial of robots on wheels.
+    fn moves(&self, body: BodyId) -> bool;
+    /// Gets the sides of the arena [m].
+    fn size(&self) -> [f64; 2];
+    /// Returns a round obstacle with its radius [m]. `key` names it.
+    fn cylinder(&self, name: &str, key: &str) -> Result<(BodyId, f64), Error>;
+    /// Returns all areas of a name. `key` names them.
+    fn areas(&self, name: &str, key: &str) -> Result<Vec<Area>, Error>;
+    /// Returns the robots of a group, from the first up to the one after the last. `key` names it.
+    fn group(&self, name: &str, key: &str) -> Result<[usize; 2], Error>;
+    /// Returns the first channel of a sensor and the one after the last. `key` names it.
+    fn sensor_channels(&self, name: &str, key: &str) -> Result<[usize; 2], Error>;
+    /// Returns a thing or body of a robot with joints, with the distance of its surface from the center [m].
+    fn target_with_reach(&self, name: &str, key: &str) -> Result<(NamedPoint, f64), Error>;
+    /// Returns a point of a body of the robot or of a thing.
+    fn part_or_thing(&self, body: Option<&String>, point: [f64; 3]) -> Result<NamedPoint, Error>;
+    /// Returns the joint of the key `joint`.
+    fn one_joint(&self, name: &str) -> Result<JointId, Error>;
     /// Returns true for an engine in which cameras with sectors see.
     fn shows(&self) -> bool;
     /// Returns a body of the robot, or a frame of its file with the pose in that body. `key` names it.

@@ -58,12 +58,6 @@ impl FormulaConditions {
         Ok(made)
     }
 
-    /// Returns the path of a term or of the condition that it belongs to.
-    pub(crate) fn path_of(&self, term: usize) -> String {
-        let condition = term.checked_sub(self.shown).and_then(|number| self.paths.get(number));
-        condition.cloned().unwrap_or_else(|| format!("/reward/{term}"))
-    }
-
     /// Returns the formula of the condition at a path.
     pub(crate) fn take(&mut self, path: &str) -> Option<FormulaCondition> {
         let place = self.conditions.iter().position(|(known, _)| known == path)?;

@@ -2,8 +2,9 @@
 
 use crate::check::registry::Registry;
 use crate::check::source::Source;
-use crate::document::{Document, MotorKind, Object, RewardKind, SensorKind, Shape};
+use crate::document::{Document, MotorKind, Object, SensorKind, Shape};
 use crate::formula::compile::is_constant as is_constant_formula;
+use crate::part::term::Constants;
 use crate::parts::groups::Groups;
 
 /// Describes the fitness of a document if it has one value for all individuals.
@@ -34,29 +35,45 @@ fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Sou
     if term.clip.is_some_and(|[low, high]| low == high) {
         return true;
     }
-    let alone = groups.robots() == 1;
-    let foraging = document.foraging.as_ref();
-    match &term.kind {
-        RewardKind::Steps {} | RewardKind::Step {} | RewardKind::Time {} | RewardKind::TimeLeft { .. } => true,
-        RewardKind::Formula { formula } => is_constant_formula(formula),
-        RewardKind::NearOthers {}
-        | RewardKind::Dispersion {}
-        | RewardKind::Clusters {}
-        | RewardKind::LargestCluster {} => alone,
-        RewardKind::Held {} => !pulls(document, &source.registry),
-        RewardKind::Food {} | RewardKind::CarriedFood {} => foraging.is_some_and(|foraging| foraging.cells == 0),
-        RewardKind::LostFood {} => foraging.is_some_and(|foraging| foraging.cells == 0 || foraging.cost == 0.0),
-        RewardKind::Deaths {} | RewardKind::Energy {} | RewardKind::Alive {} => {
-            foraging.is_some_and(|foraging| foraging.cost == 0.0)
-        }
-        RewardKind::Moved { object } => is_fixed(object, document, source),
-        RewardKind::Sensor { sensor } => {
-            let place = source.names.sensors.iter().position(|(name, _)| name == sensor);
-            let sensor = place.and_then(|place| document.sensors.get(place));
-            let constant = |kind: &SensorKind| source.registry.sensor(kind).is_some_and(|sensor| sensor.is_constant());
-            sensor.is_some_and(|sensor| sensor.wrappers.is_empty() && constant(&sensor.kind))
-        }
-        _ => false,
+    let facts = Facts { document, groups, source };
+    source.registry.term(&term.kind).is_some_and(|term| term.is_constant(&facts))
+}
+
+/// Facts about a document.
+struct Facts<'f> {
+    document: &'f Document,
+    groups: &'f Groups,
+    source: &'f Source,
+}
+
+impl Constants for Facts<'_> {
+    fn is_alone(&self) -> bool {
+        self.groups.robots() == 1
+    }
+
+    fn pulls(&self) -> bool {
+        pulls(self.document, &self.source.registry)
+    }
+
+    fn foraging(&self) -> [bool; 2] {
+        self.document.foraging.as_ref().map_or([false; 2], |foraging| [foraging.cells == 0, foraging.cost == 0.0])
+    }
+
+    fn is_fixed(&self, thing: &str) -> bool {
+        let movable = |object: &Object| matches!(object.shape, Some(Shape::Block { .. } | Shape::Ball { .. }));
+        let object = self.document.objects.iter().find(|object| object.name == thing);
+        object.is_some_and(|object| !movable(object) && !self.pulls())
+    }
+
+    fn is_constant(&self, sensor: &str) -> bool {
+        let place = self.source.names.sensors.iter().position(|(name, _)| name == sensor);
+        let sensor = place.and_then(|place| self.document.sensors.get(place));
+        let constant = |kind: &SensorKind| self.source.registry.sensor(kind).is_some_and(|sensor| sensor.is_constant());
+        sensor.is_some_and(|sensor| sensor.wrappers.is_empty() && constant(&sensor.kind))
+    }
+
+    fn is_constant_formula(&self, formula: &str) -> bool {
+        is_constant_formula(formula)
     }
 }
 
@@ -64,11 +81,4 @@ fn is_constant(number: usize, document: &Document, groups: &Groups, source: &Sou
 pub(crate) fn pulls(document: &Document, registry: &Registry) -> bool {
     let pulls = |kind: &MotorKind| registry.motor(kind).is_some_and(|motor| motor.pulls());
     document.motors.iter().any(|motor| motor.enabled && pulls(&motor.kind))
-}
-
-/// Checks if a thing stays at its place in a trial.
-fn is_fixed(name: &str, document: &Document, source: &Source) -> bool {
-    let movable = |object: &Object| matches!(object.shape, Some(Shape::Block { .. } | Shape::Ball { .. }));
-    let object = document.objects.iter().find(|object| object.name == name);
-    object.is_some_and(|object| !movable(object) && !pulls(document, &source.registry))
 }

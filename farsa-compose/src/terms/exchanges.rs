@@ -5,8 +5,7 @@ use farsa_lab::Error;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::part::scene::{Area, PartScene};
-use crate::part::term::{Term, TermPart};
+use crate::part::{Area, Moment, PartScene, Term, TermPart};
 
 /// Number of times that two robots exchanged two areas: each is in one of them, the other way round than the last time.
 ///
@@ -30,23 +29,23 @@ pub(super) struct ExchangesTerm {
 }
 
 impl<W: Kinematics + Handles<Body = BodyId>> Term<W> for ExchangesTerm {
-    fn start(&mut self, world: &W) {
+    fn start(&mut self, world: &W, now: &Moment<'_>) {
         (self.last, self.count) = (None, 0);
-        self.step(world);
+        self.step(world, now);
     }
 
-    fn step(&mut self, world: &W) {
+    fn step(&mut self, world: &W, _: &Moment<'_>) {
         let is_in = |robot: usize, area: usize| self.areas[area].contains(world, world.pose(self.robots[robot]));
-        let now = match () {
+        let first = match () {
             () if is_in(0, 0) && is_in(1, 1) => true,
             () if is_in(0, 1) && is_in(1, 0) => false,
             () => return,
         };
-        self.count += u32::from(self.last.is_some_and(|last| last != now));
-        self.last = Some(now);
+        self.count += u32::from(self.last.is_some_and(|last| last != first));
+        self.last = Some(first);
     }
 
-    fn value(&self, _: &W) -> f64 {
+    fn value(&self, _: &W, _: &Moment<'_>) -> f64 {
         f64::from(self.count)
     }
 }

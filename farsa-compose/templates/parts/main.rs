@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use farsa_body::ports::{BodyId, Channels, Handles, Kinematics, Sensor};
-use farsa_compose::part::{self, PartScene, SensorPart, Term, TermPart};
+use farsa_compose::part::{self, Moment, PartScene, SensorPart, Term, TermPart};
 use farsa_lab::{Error, Laboratory};
 use farsa_num::Scalar;
 use schemars::JsonSchema;
@@ -57,15 +57,15 @@ struct Path {}
 struct PathTerm(BodyId, [f32; 3], f64);
 
 impl<W: Kinematics + Handles<Body = BodyId>> Term<W> for PathTerm {
-    fn start(&mut self, world: &W) {
+    fn start(&mut self, world: &W, _: &Moment<'_>) {
         (self.1, self.2) = (world.pose(self.0).position, 0.0);
     }
-    fn step(&mut self, world: &W) {
+    fn step(&mut self, world: &W, _: &Moment<'_>) {
         let now = world.pose(self.0).position;
         let squares = now.iter().zip(self.1).map(|(x, before)| f64::from(x - before) * f64::from(x - before));
         (self.1, self.2) = (now, self.2 + Scalar::sqrt(squares.sum::<f64>()));
     }
-    fn value(&self, _: &W) -> f64 {
+    fn value(&self, _: &W, _: &Moment<'_>) -> f64 {
         self.2
     }
 }

@@ -6,8 +6,8 @@ use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 use farsa_body::robots::MobileRobot;
 use farsa_compose::document::{Object, Shape};
 use farsa_compose::part::{
-    self, Filter, MotorPart, NetworkEnds, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot, Start,
-    StartPart, Term, TermPart, ThingPart, WrapperPart,
+    self, Filter, Moment, MotorPart, NetworkEnds, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot,
+    Start, StartPart, Term, TermPart, ThingPart, WrapperPart,
 };
 use farsa_lab::advanced::Part;
 use farsa_lab::exports::NetworkExport;
@@ -226,7 +226,7 @@ pub(crate) struct Away {
 pub(crate) struct AwayTerm(pub(crate) [BodyId; 2]);
 
 impl<W: Kinematics + Handles<Body = BodyId>> Term<W> for AwayTerm {
-    fn value(&self, world: &W) -> f64 {
+    fn value(&self, world: &W, _: &Moment<'_>) -> f64 {
         let [p, q] = self.0.map(|body| world.pose(body).position.map(f64::from));
         Scalar::sqrt((0..3).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum::<f64>())
     }
@@ -251,16 +251,16 @@ pub(crate) struct PathTerm {
 }
 
 impl<W: Kinematics + Handles<Body = BodyId>> Term<W> for PathTerm {
-    fn start(&mut self, world: &W) {
+    fn start(&mut self, world: &W, _: &Moment<'_>) {
         (self.at, self.way) = (world.pose(self.body).position, 0.0);
     }
-    fn step(&mut self, world: &W) {
+    fn step(&mut self, world: &W, _: &Moment<'_>) {
         let now = world.pose(self.body).position;
         let squares = (0..3).map(|k| f64::from(now[k] - self.at[k])).map(|x| x * x);
         self.way += Scalar::sqrt(squares.sum::<f64>());
         self.at = now;
     }
-    fn value(&self, _: &W) -> f64 {
+    fn value(&self, _: &W, _: &Moment<'_>) -> f64 {
         self.way
     }
 }

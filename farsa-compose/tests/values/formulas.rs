@@ -230,7 +230,10 @@ fn wrong_formulas_are_refused_at_their_place() {
             "reward = \"time\"\nend = [\"time > 3\", \"gap(yard) < 1\"]",
             "values.toml line 2, column 1 of the formula: `end.2.formula`: `yard` is no cylinder",
         ),
-        ("reward = \"time\"\nfailure = \"food > 1\"", "values.toml line 2: `failure.1`: needs the section `foraging`"),
+        (
+            "reward = \"time\"\nfailure = \"food > 1\"",
+            "line 2, column 1 of the formula: `failure.1.formula`: needs the section `foraging`",
+        ),
         (
             "reward = \"time\"\nsuccess = \"time\"",
             "line 2, column 1 of the formula: `success.1.formula`: the formula is a number",

@@ -1,0 +1,124 @@
+//! Steps and time.
+
+use farsa_lab::Error;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::part::term::Constants;
+use crate::part::{Moment, PartScene, Term, TermPart};
+
+/// 1 in every step.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub(super) struct Steps {}
+
+/// Number of steps since the start.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub(super) struct Step {}
+
+/// Time since the start [s].
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub(super) struct Time {}
+
+/// Share of the longest trial that is left.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+pub(super) struct TimeLeft {
+    /// Name of a group of robots for which it is the rest of 1 instead.
+    rest: String,
+}
+
+/// A function of the moment.
+#[derive(Clone, Debug)]
+pub(super) struct ClockTerm(fn(&Moment<'_>) -> f64);
+
+impl<W: ?Sized> Term<W> for ClockTerm {
+    fn value(&self, _: &W, now: &Moment<'_>) -> f64 {
+        (self.0)(now)
+    }
+
+    fn has_state(&self) -> bool {
+        false
+    }
+}
+
+/// Share of the longest trial that is left, or its rest of 1.
+#[derive(Clone, Debug)]
+pub(super) struct TimeLeftTerm {
+    is_rest: bool,
+}
+
+impl<W: ?Sized> Term<W> for TimeLeftTerm {
+    fn value(&self, _: &W, now: &Moment<'_>) -> f64 {
+        // 1 - t / T
+        let left = 1.0 - f64::from(now.steps) / f64::from(now.longest);
+        if self.is_rest { 1.0 - left } else { left }
+    }
+
+    fn has_state(&self) -> bool {
+        false
+    }
+}
+
+impl TermPart for Steps {
+    type Term = ClockTerm;
+
+    fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
+        Ok(ClockTerm(|_| 1.0))
+    }
+
+    fn looks_back(&self) -> bool {
+        false
+    }
+
+    fn is_constant(&self, _: &dyn Constants) -> bool {
+        true
+    }
+}
+
+impl TermPart for Step {
+    type Term = ClockTerm;
+
+    fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
+        Ok(ClockTerm(|now| f64::from(now.steps)))
+    }
+
+    fn looks_back(&self) -> bool {
+        false
+    }
+
+    fn is_constant(&self, _: &dyn Constants) -> bool {
+        true
+    }
+}
+
+impl TermPart for Time {
+    type Term = ClockTerm;
+
+    fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
+        Ok(ClockTerm(|now| f64::from(now.steps) * now.time_step))
+    }
+
+    fn looks_back(&self) -> bool {
+        false
+    }
+
+    fn is_constant(&self, _: &dyn Constants) -> bool {
+        true
+    }
+}
+
+impl TermPart for TimeLeft {
+    type Term = TimeLeftTerm;
+
+    fn term(&self, scene: &PartScene<'_>) -> Result<TimeLeftTerm, Error> {
+        let [first, end] = scene.0.group(&self.rest, "rest")?;
+        Ok(TimeLeftTerm { is_rest: (first..end).contains(&scene.0.robot()) })
+    }
+
+    fn looks_back(&self) -> bool {
+        false
+    }
+
+    fn is_constant(&self, _: &dyn Constants) -> bool {
+        true
+    }
+}
