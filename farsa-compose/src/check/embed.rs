@@ -116,6 +116,8 @@ pub(crate) fn embedded(
         return Ok(None);
     }
     let mut text = format!("{}\n\n[files]\n", text.trim_end());
+    // Another file may have the name of the meshes.
+    let meshes = meshes.filter(|(name, _)| contents.iter().all(|(other, _)| other != name));
     for (name, content) in contents.into_iter().chain(meshes) {
         // Writing into a string cannot fail.
         let _ = writeln!(text, "{} = {}", toml::Value::String(name), toml::Value::String(content));

@@ -71,9 +71,11 @@ impl RobotModel {
             return Err(source.wrong("/robot/file", format!("{name}: has nothing that moves")));
         }
         let frames = frames.into_iter().map(|frame| (frame.name, frame.body, frame.placement)).collect();
-        let meshes = document.files.get(&drawn_meshes::text_name(name));
+        let name_of_meshes = drawn_meshes::text_name(name);
+        let meshes = document.files.get(&name_of_meshes);
         let meshes = meshes.map(|text| drawn_meshes::read(text, &robot)).transpose();
-        let meshes = meshes.map_err(|why| source.wrong("/robot/file", format!("{name}: {why}")))?.unwrap_or_default();
+        let meshes =
+            meshes.map_err(|why| source.wrong("/robot/file", format!("{name_of_meshes}: {why}")))?.unwrap_or_default();
         Ok(Self { robot, frames, touches: contacts, meshes })
     }
 

@@ -143,7 +143,7 @@ fn pages_draw_the_meshes_of_a_model() {
         let changed = stored.replace(&from.replace('"', "\\\""), &to.replace('"', "\\\"")).replace(from, to);
         assert_ne!(changed, stored);
         let error = read_again(&changed).err().expect("an error").to_string();
-        assert!(error.contains("`robot.file`: model/arm.urdf: ") && error.contains(why), "{error}");
+        assert!(error.contains("`robot.file`: model/arm.urdf.meshes: ") && error.contains(why), "{error}");
     }
 }
 

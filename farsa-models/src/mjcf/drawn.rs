@@ -31,7 +31,7 @@ pub(crate) struct MeshGeom<'t> {
 }
 
 impl<'t> MeshGeom<'t> {
-    /// Gets the mesh of a geom in a group that is shown or with a collider, whose frame is at `frame` in its segment's.
+    /// Gets the mesh of a geom in a group that is shown or with a collider, unless it is transparent. Its frame is at `frame` in its segment's.
     pub(crate) fn new(
         (classed, compiler, model): (&Classed<'t, '_>, &Compiler, Element<'t>),
         (body, frame): (Option<BodyId>, &Pose<f64>),
@@ -44,7 +44,11 @@ impl<'t> MeshGeom<'t> {
         }
         let own = compiler.pose(classed.source("pos"), classed.source_of(&super::compiler::ROTATIONS)).ok()?;
         let placement = frame.compose(&own);
-        let color = color(classed, model);
+        let rgba = rgba(classed, model);
+        if rgba.is_some_and(|[.., alpha]| alpha <= 0.0) {
+            return None;
+        }
+        let color = rgba.map(|[red, green, blue, _]| [red, green, blue].map(|shade| shade.clamp(0.0, 1.0)));
         Some(Self { element: classed.element, mesh, body, placement, collider, color })
     }
 
@@ -54,21 +58,20 @@ impl<'t> MeshGeom<'t> {
     }
 }
 
-/// Gets the color of a geom or of its material.
-fn color<'t>(classed: &Classed<'t, '_>, model: Element<'t>) -> Option<[f64; 3]> {
+/// Gets the color of a geom or of its material, and how opaque it is.
+fn rgba<'t>(classed: &Classed<'t, '_>, model: Element<'t>) -> Option<[f64; 4]> {
     let own = classed.list("rgba", 4, 4).ok()?;
     let of_material = || {
         let name = classed.text("material")?;
         let mut materials = model.all("asset").flat_map(|asset| asset.all("material"));
         materials.find(|material| material.attribute("name") == Some(name))?.list("rgba", 4, 4).ok()?
     };
-    let rgba = own.or_else(of_material)?;
-    Some([rgba[0], rgba[1], rgba[2]].map(|shade| shade.clamp(0.0, 1.0)))
+    own.or_else(of_material)?.try_into().ok()
 }
 
 /// Reads the meshes that are drawn. A mesh of a collider is drawn only if its segment has no visual.
 ///
-/// Nothing depends on them, so that none is an error.
+/// A fault is a warning, because nothing depends on them.
 pub(crate) fn drawn<'t>(
     geoms: &[MeshGeom<'t>],
     robot: &Robot,
@@ -83,7 +86,8 @@ pub(crate) fn drawn<'t>(
     let (shown, touching): (Vec<_>, Vec<_>) = geoms.iter().partition(|geom| geom.collider.is_none());
     let visual = |body: Option<BodyId>| robot.visuals.iter().any(|visual| visual.body == body);
     for geom in shown.into_iter().chain(touching) {
-        let covered = meshes.iter().any(|mesh| mesh.body == geom.body && mesh.collider.is_none());
+        let covers = |mesh: &DrawnMesh| mesh.collider.is_none() && !mesh.triangles.is_empty();
+        let covered = meshes.iter().any(|mesh| mesh.body == geom.body && covers(mesh));
         if geom.collider.is_some() && geom.body.is_some() && (covered || visual(geom.body)) {
             continue;
         }

@@ -78,7 +78,8 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<Model, Read
     // Meshes of visuals come last, so that their files leave the limits to those that the robot needs.
     let looks = looks.iter().flat_map(|(body, link, touching)| {
         let meshes = visuals(&mut robot, *body, *link, &colors, context);
-        let looks_otherwise = !meshes.is_empty() || robot.visuals.iter().any(|visual| visual.body == *body);
+        let looks_otherwise = meshes.iter().any(|mesh| !mesh.triangles.is_empty())
+            || robot.visuals.iter().any(|visual| visual.body == *body);
         let touching = if looks_otherwise && body.is_some() { &[] } else { touching.as_slice() };
         [meshes, collision_meshes(*body, touching, context)].concat()
     });

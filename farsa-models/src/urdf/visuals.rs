@@ -37,10 +37,10 @@ enum Look {
     Mesh(Mesh, Pose<f64>),
 }
 
-/// Adds the visuals of a link, unless one of them is not to be read: half of its looks would be none. Returns the meshes
-/// of a link with a mesh, for whose other visuals there are also meshes.
+/// Adds the visuals of a link, or none of them if one cannot be read. Returns the meshes of a link with a mesh, for whose
+/// other visuals there are also meshes.
 ///
-/// Nothing depends on them, so that none is an error.
+/// A fault is a warning, because nothing depends on them.
 pub(super) fn visuals(
     robot: &mut Robot,
     body: Option<BodyId>,

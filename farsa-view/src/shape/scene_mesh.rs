@@ -35,7 +35,7 @@ impl SceneMesh {
     /// Creates a mesh from points in the frame of its body [m] and the indices of the corners of triangles.
     ///
     /// # Errors
-    /// Returns [`Error::Mesh`] if there is no triangle, more than 65536 points, an absent point or an infinite number.
+    /// Returns [`Error::Mesh`] if there is no triangle, an absent point, one above the 65536th or an infinite number.
     pub fn new(body: Option<BodyId>, points: &[Vector], triangles: &[[usize; 3]]) -> Result<Self, Error> {
         let end = |sign: f64| [0, 1, 2].map(|k| points.iter().map(|p| sign * p[k]).fold(f64::NEG_INFINITY, f64::max));
         let (low, high) = (end(-1.0).map(|x| -x), end(1.0));
@@ -119,24 +119,37 @@ impl SceneMesh {
         let values: Vec<Value> = serde_json::from_str(text).map_err(|error| Error::NotJson(error.to_string()))?;
         values
             .iter()
-            .map(|value| Self::from_value(value).ok_or_else(|| Error::Mesh("lacks a key".into()))?.checked())
+            .map(|value| {
+                Self::from_value(value)
+                    .ok_or_else(|| Error::Mesh("lacks a key or has an invalid one".into()))?
+                    .checked()
+            })
             .collect()
     }
 
     fn from_value(value: &Value) -> Option<Self> {
-        let number = |key: &str| value[key].as_u64();
-        let vector = |key: &str| Some([value[key][0].as_f64()?, value[key][1].as_f64()?, value[key][2].as_f64()?]);
+        let number = |key: &str| match &value[key] {
+            Value::Null => Some(None),
+            number => number.as_u64().map(Some),
+        };
+        let vector = |key: &str| match value[key].as_array()?.as_slice() {
+            [x, y, z] => Some([x.as_f64()?, y.as_f64()?, z.as_f64()?]),
+            _ => None,
+        };
         let words = |key: &str| -> Option<Vec<[u16; 3]>> {
             let bytes = STANDARD.decode(value[key].as_str()?).ok()?;
             let (points, rest) = bytes.as_chunks::<6>();
             let word = |six: &[u8; 6]| [0, 2, 4].map(|k| u16::from_le_bytes([six[k], six[k + 1]]));
             rest.is_empty().then(|| points.iter().map(word).collect())
         };
-        let shade = |k: usize| value["color"][k].as_u64().and_then(|shade| u8::try_from(shade).ok());
+        let color = || {
+            let shades: Vec<u8> = vector("color")?.into_iter().filter_map(|x| u8::try_from(x as i64).ok()).collect();
+            shades.try_into().ok()
+        };
         Some(Self {
-            body: number("body").map(|body| u16::try_from(body).map(BodyId)).transpose().ok()?,
-            collider: number("collider").map(usize::try_from).transpose().ok()?,
-            color: shade(0).zip(shade(1)).zip(shade(2)).map(|((red, green), blue)| [red, green, blue]),
+            body: number("body")?.map(|body| u16::try_from(body).map(BodyId)).transpose().ok()?,
+            collider: number("collider")?.map(usize::try_from).transpose().ok()?,
+            color: if value["color"].is_null() { None } else { Some(color()?) },
             centre: vector("centre")?,
             half: vector("half")?,
             points: words("points")?.into_iter().map(|point| point.map(u16::cast_signed)).collect(),
@@ -179,9 +192,16 @@ mod tests {
         }
         let text = SceneMesh::text(&[tetrahedron()]);
         assert!(matches!(SceneMesh::from_text("{"), Err(Error::NotJson(_))));
-        for (from, to) in
-            [("\"body\":3", "\"body\":70000"), ("\"half\"", "\"other\""), ("AAAC", "//8C"), ("1.5]", "-1.5]")]
-        {
+        for (from, to) in [
+            ("\"body\":3", "\"body\":70000"),
+            ("\"body\":3", "\"body\":-1"),
+            ("\"collider\":null", "\"collider\":1.5"),
+            ("\"color\":null", "\"color\":[300,0,0]"),
+            ("\"half\"", "\"other\""),
+            ("AAAC", "//8C"),
+            ("1.5]", "-1.5]"),
+            ("1.5]", "1.5,1]"),
+        ] {
             assert!(text.contains(from), "{from} {text}");
             assert!(matches!(SceneMesh::from_text(&text.replace(from, to)), Err(Error::Mesh(_))), "{from}");
         }
