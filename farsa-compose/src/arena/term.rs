@@ -10,6 +10,7 @@ use crate::check::source::Source;
 use crate::document::RewardKind;
 use crate::formula::channels::{ChannelNames, Channels};
 use crate::formula::compile::{Formula, Quantity, Scope};
+use crate::formula::program::Program;
 use crate::part::object::PlanarTerm;
 use crate::part::{self, Moment};
 
@@ -29,6 +30,8 @@ enum Measure {
     Robots(Vec<Box<dyn PlanarTerm>>),
     Channels(Channels),
     Formula(Box<Formula<Term>>),
+    /// A formula of one quantity of each robot.
+    Changed(Box<Program>, Vec<Box<dyn PlanarTerm>>),
 }
 
 impl Term {
@@ -51,6 +54,14 @@ impl Term {
                 && let Some(term) = formula.terms.pop_if(|term| term.about.is_none())
             {
                 return Ok(term);
+            }
+            if formula.program.is_of_one_quantity()
+                && let [Self { measure: Measure::Robots(terms), about: None, looks_back, is_of_team }] =
+                    &formula.terms[..]
+            {
+                let (looks_back, is_of_team) = (*looks_back, *is_of_team);
+                let measure = Measure::Changed(Box::new(formula.program), terms.clone());
+                return Ok(Self { measure, looks_back, is_of_team, about: None });
             }
             let looks_back = formula.terms.iter().any(Self::looks_back);
             let is_of_team = formula.terms.iter().all(Self::is_of_team);
@@ -101,7 +112,9 @@ impl Term {
     /// Checks if the measure has a state that each step updates.
     pub(crate) fn has_state(&self) -> bool {
         match &self.measure {
-            Measure::Robots(terms) => terms.iter().any(|term| part::Term::<arena::World>::has_state(&**term)),
+            Measure::Robots(terms) | Measure::Changed(_, terms) => {
+                terms.iter().any(|term| part::Term::<arena::World>::has_state(&**term))
+            }
             Measure::Channels(_) => false,
             Measure::Formula(formula) => formula.terms.iter().any(Self::has_state),
         }
@@ -110,7 +123,11 @@ impl Term {
     /// Stores the state at the start of a trial.
     pub(crate) fn begin<W: ArenaWorld>(&mut self, world: &W, now: &Moment<'_>) {
         match &mut self.measure {
-            Measure::Robots(terms) => terms.iter_mut().for_each(|term| world.begin(&mut **term, now)),
+            Measure::Robots(terms) | Measure::Changed(_, terms) => {
+                for term in terms {
+                    world.begin(&mut **term, now);
+                }
+            }
             Measure::Channels(_) => {}
             Measure::Formula(formula) => formula.terms.iter_mut().for_each(|term| term.begin(world, now)),
         }
@@ -119,7 +136,11 @@ impl Term {
     /// Updates the state after a step.
     pub(crate) fn step<W: ArenaWorld>(&mut self, world: &W, now: &Moment<'_>) {
         match &mut self.measure {
-            Measure::Robots(terms) => terms.iter_mut().for_each(|term| world.step_term(&mut **term, now)),
+            Measure::Robots(terms) | Measure::Changed(_, terms) => {
+                for term in terms {
+                    world.step_term(&mut **term, now);
+                }
+            }
             Measure::Channels(_) => {}
             Measure::Formula(formula) => formula.terms.iter_mut().for_each(|term| term.step(world, now)),
         }
@@ -137,25 +158,37 @@ impl Term {
             Measure::Robots(terms) => terms.get(robot).map_or(f64::NAN, |term| world.value(&**term, now)),
             Measure::Channels(channels) => channels.value(now.sensed(robot), now.driven(robot)),
             Measure::Formula(formula) => Self::formula_value(formula, world, now, robot),
+            Measure::Changed(program, terms) => {
+                program.of_one_quantity(terms.get(robot).map_or(f64::NAN, |term| world.value(&**term, now)))
+            }
         }
     }
 
-    /// Computes a formula. Separate, because its stack would slow down other terms.
+    /// Computes a formula.
     #[inline(never)]
     fn formula_value<W: ArenaWorld>(formula: &Formula<Self>, world: &W, now: &Moment<'_>, robot: usize) -> f64 {
-        let value = |term: &Self, robot: usize| match &term.measure {
+        formula.program.evaluate(|number| {
+            let term = &formula.terms[number];
+            match (&term.measure, term.about) {
+                (Measure::Robots(terms), None) => terms.get(robot).map_or(f64::NAN, |term| world.value(&**term, now)),
+                _ => term.other_value(world, now, robot),
+            }
+        })
+    }
+
+    /// Computes the mean over the robots that the quantity is about, or a channel.
+    #[inline(never)]
+    fn other_value<W: ArenaWorld>(&self, world: &W, now: &Moment<'_>, robot: usize) -> f64 {
+        let value = |robot: usize| match &self.measure {
             Measure::Robots(terms) => terms.get(robot).map_or(f64::NAN, |term| world.value(&**term, now)),
             Measure::Channels(channels) => channels.value(now.sensed(robot), now.driven(robot)),
             // Terms of formulas are no formulas.
-            Measure::Formula(_) => f64::NAN,
+            Measure::Formula(_) | Measure::Changed(..) => f64::NAN,
         };
-        formula.program.evaluate(|number| {
-            let term = &formula.terms[number];
-            let Some([first, end]) = term.about else { return value(term, robot) };
-            // A smaller team lacks its last robots.
-            let robots = first..end.min(now.poses.len());
-            let count = robots.len().max(1) as f64;
-            robots.map(|robot| value(term, robot)).sum::<f64>() / count
-        })
+        let Some([first, end]) = self.about else { return value(robot) };
+        // A smaller team lacks its last robots.
+        let robots = first..end.min(now.poses.len());
+        let count = robots.len().max(1) as f64;
+        robots.map(value).sum::<f64>() / count
     }
 }

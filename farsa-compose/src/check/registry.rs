@@ -1,4 +1,4 @@
-//! Parts of the user's program, and the schema with their keys.
+//! Registered parts, and the schema with their keys.
 
 use std::sync::Arc;
 

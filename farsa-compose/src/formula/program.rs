@@ -189,31 +189,37 @@ impl Program {
         matches!(self.ops[..], [Op::Load(_)])
     }
 
+    /// Checks if the value is that of a single quantity after operations of one operand.
+    pub(crate) fn is_of_one_quantity(&self) -> bool {
+        self.store == Store::Register
+    }
+
+    /// Computes the value from its single quantity.
+    #[inline(always)]
+    pub(crate) fn of_one_quantity(&self, quantity: f64) -> f64 {
+        let value = self.ops.iter().skip(1).fold(quantity, |x, op| unary(*op, x));
+        if quantity.is_finite() { value } else { f64::NAN }
+    }
+
     /// Computes the value, with quantities from `load`. It is NaN if one of them is not finite.
     #[inline(always)]
     pub(crate) fn evaluate(&self, load: impl FnMut(usize) -> f64) -> f64 {
         match self.store {
             Store::Register => self.run_in_register(load),
-            Store::SmallStack => self.run::<SMALL_STACK>(load),
-            Store::Stack => self.evaluate_large(load),
+            Store::SmallStack => self.evaluate_on::<SMALL_STACK>(load),
+            Store::Stack => self.evaluate_on::<STACK>(load),
         }
     }
 
     #[inline(always)]
     fn run_in_register(&self, mut load: impl FnMut(usize) -> f64) -> f64 {
-        let Some((Op::Load(number), rest)) = self.ops.split_first() else { return f64::NAN };
-        let quantity = load(*number as usize);
-        let value = rest.iter().fold(quantity, |x, op| unary(*op, x));
-        if quantity.is_finite() { value } else { f64::NAN }
+        let Some(Op::Load(number)) = self.ops.first() else { return f64::NAN };
+        self.of_one_quantity(load(*number as usize))
     }
 
+    /// Separate, because its stack would slow down formulas without one.
     #[inline(never)]
-    fn evaluate_large(&self, load: impl FnMut(usize) -> f64) -> f64 {
-        self.run::<STACK>(load)
-    }
-
-    #[inline(always)]
-    fn run<const N: usize>(&self, mut load: impl FnMut(usize) -> f64) -> f64 {
+    fn evaluate_on<const N: usize>(&self, mut load: impl FnMut(usize) -> f64) -> f64 {
         let mut stack = [0.0_f64; N];
         // The number of values, of which `top` is the last. It is in a register, and below it are those of the stack.
         let (mut count, mut top) = (0_usize, 0.0_f64);

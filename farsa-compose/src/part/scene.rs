@@ -99,7 +99,7 @@ pub(crate) trait Surroundings {
     fn joint(&self, names: &[String], channel: usize, fits: &dyn Fn(JointId) -> bool) -> JointAbout;
     /// Returns named joints, or without names all that fit.
     fn fitting(&self, names: &[String], fits: &dyn Fn(JointId) -> bool) -> Result<Vec<JointId>, Error>;
-    /// Returns the actuators of now.
+    /// Returns the present actuators.
     fn wiring(&self) -> Wiring;
     /// Gets the actuators, while motors are built.
     fn open_wiring(&self) -> Option<&RefCell<Wiring>>;
