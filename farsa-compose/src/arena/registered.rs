@@ -195,8 +195,8 @@ impl Surroundings for PartOfPlanar<'_> {
         let path = format!("{}/{key}", self.path);
         let body = self.scene.body(name, &path, self.source)?;
         let is_placed = self.rule.is_some_and(|RuleOf { document, placed, .. }| {
-            let stands = document.objects.iter().any(|object| object.name == name && object.at.is_some());
-            stands || placed.contains(&body)
+            let is_fixed = document.objects.iter().any(|object| object.name == name && object.at.is_some());
+            is_fixed || placed.contains(&body)
         });
         let why = || self.source.wrong(&path, format!("`{name}` has to be placed before"));
         is_placed.then_some(body).ok_or_else(why)

@@ -96,7 +96,7 @@ impl Setup {
         let mut make =
             |quantity: &Quantity, path: &str| Ok((Term::from_quantity(quantity, path, channels, &scene, source)?, 0));
         let conditions = FormulaConditions::new(&document, channels, &mut terms, &mut make, source)?;
-        let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
+        let of_steps: Vec<bool> = terms.iter().map(Term::has_state).collect();
         let ledger = {
             let abouts: Vec<_> = terms[document.reward.len()..].iter().map(Term::about).collect();
             Ledger::new(&document, &of_steps, (conditions, &abouts), &scene.groups, source)?

@@ -18,7 +18,6 @@ use crate::part::{self, Moment};
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     measure: Measure,
-    looks_back: bool,
     is_of_team: bool,
     /// Robots of the mean in a formula, from the first up to the one after the last, by default the measured one.
     about: Option<[usize; 2]>,
@@ -56,25 +55,21 @@ impl Term {
                 return Ok(term);
             }
             if formula.program.is_of_one_quantity()
-                && let [Self { measure: Measure::Robots(terms), about: None, looks_back, is_of_team }] =
-                    &formula.terms[..]
+                && let [Self { measure: Measure::Robots(terms), about: None, is_of_team }] = &formula.terms[..]
             {
-                let (looks_back, is_of_team) = (*looks_back, *is_of_team);
                 let measure = Measure::Changed(Box::new(formula.program), terms.clone());
-                return Ok(Self { measure, looks_back, is_of_team, about: None });
+                return Ok(Self { measure, is_of_team: *is_of_team, about: None });
             }
-            let looks_back = formula.terms.iter().any(Self::looks_back);
             let is_of_team = formula.terms.iter().all(Self::is_of_team);
-            return Ok(Self { measure: Measure::Formula(Box::new(formula)), looks_back, is_of_team, about: None });
+            return Ok(Self { measure: Measure::Formula(Box::new(formula)), is_of_team, about: None });
         }
         let term = |robot| {
             let sensors = channels.sensors;
             registered::term(kind, PartOfPlanar { scene, robot, files: None, rule: None, sensors, path, source })
         };
         let terms = (0..scene.robots.len()).map(term).collect::<Result<_, _>>()?;
-        let looks_back = facts.as_ref().is_some_and(|facts| facts.looks_back());
         let is_of_team = facts.is_some_and(|facts| facts.is_of_team());
-        Ok(Self { measure: Measure::Robots(terms), looks_back, is_of_team, about: None })
+        Ok(Self { measure: Measure::Robots(terms), is_of_team, about: None })
     }
 
     /// Reads the term of a formula's quantity.
@@ -94,14 +89,9 @@ impl Term {
                 Ok(Self { about, ..Self::new(&kind, path, channels, scene, source)? })
             }
             Quantity::Channels(channels) => {
-                Ok(Self { measure: Measure::Channels(*channels), looks_back: false, is_of_team: false, about: None })
+                Ok(Self { measure: Measure::Channels(*channels), is_of_team: false, about: None })
             }
         }
-    }
-
-    /// Checks if the measure depends on the previous step.
-    pub(crate) fn looks_back(&self) -> bool {
-        self.looks_back
     }
 
     /// Checks if the measure has one value for the whole team.

@@ -77,7 +77,7 @@ impl Setup {
         let groups = Groups::new([(ROBOT.to_owned(), 1)], false);
         let mut make = |quantity: &Quantity, path: &str| Term::from_quantity(quantity, path, channels, &scene, source);
         let conditions = FormulaConditions::new(&document, channels, &mut terms, &mut make, source)?;
-        let of_steps: Vec<bool> = terms.iter().map(Term::looks_back).collect();
+        let of_steps: Vec<bool> = terms.iter().map(Term::has_state).collect();
         let mut ledger = Ledger::new(&document, &of_steps, (conditions, &[]), &groups, source)?;
         ledger.warnings.extend(warnings);
         let starting = Starting::new(&document, &scene, source)?;

@@ -17,7 +17,6 @@ use crate::part::{self, Moment};
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     measure: Measure,
-    looks_back: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -47,13 +46,11 @@ impl Term {
             {
                 return Ok(term);
             }
-            let looks_back = formula.terms.iter().any(Self::looks_back);
-            return Ok(Self { measure: Measure::Formula(Box::new(formula)), looks_back });
+            return Ok(Self { measure: Measure::Formula(Box::new(formula)) });
         }
         let sensors = channels.sensors;
         let part = PartOfSpatial { scene, wiring: None, rule: None, sensors, path, source };
-        let looks_back = facts.is_some_and(|facts| facts.looks_back());
-        Ok(Self { measure: Measure::Robot(registered::term(kind, part)?), looks_back })
+        Ok(Self { measure: Measure::Robot(registered::term(kind, part)?) })
     }
 
     /// Reads the term of a formula's quantity, with the number of its unit: 0 for hinges and 1 for rails.
@@ -74,7 +71,7 @@ impl Term {
                 &touch
             }
             Quantity::Channels(channels) => {
-                return Ok((Self { measure: Measure::Channels(*channels), looks_back: false }, 0));
+                return Ok((Self { measure: Measure::Channels(*channels) }, 0));
             }
         };
         let term = Self::new(kind, path, channels, scene, source)?;
@@ -86,11 +83,6 @@ impl Term {
             return Err(source.wrong(path, "mixes hinges and rails, whose units differ; name the joints"));
         }
         Ok((term, usize::from(rails > 0)))
-    }
-
-    /// Checks if the measure depends on the previous step.
-    pub(crate) fn looks_back(&self) -> bool {
-        self.looks_back
     }
 
     /// Checks if the measure has a state that each step updates.

@@ -21,7 +21,7 @@ pub trait Term<W: ?Sized> {
     /// Computes the value after a step. NaN makes the trial fail.
     fn value(&self, world: &W, now: &Moment<'_>) -> f64;
 
-    /// Returns true for a term with a state that [`step`](Self::step) updates.
+    /// Returns true for a term with a state that [`step`](Self::step) updates. Each step measures such a term.
     fn has_state(&self) -> bool {
         true
     }
@@ -39,11 +39,6 @@ pub trait TermPart: Keys {
     /// # Errors
     /// Returns an error if the scene lacks something. Errors of [`PartScene`] name the place in the file.
     fn term(&self, scene: &PartScene<'_>) -> Result<Self::Term, Error>;
-
-    /// Returns true for a term that depends on the previous step, so that each step has to measure it.
-    fn looks_back(&self) -> bool {
-        true
-    }
 
     /// Returns true for a term with one value for all robots, that of the first one.
     fn is_of_team(&self) -> bool {
@@ -88,7 +83,6 @@ pub trait Constants {
 
 /// Facts about a term of unknown type.
 pub(crate) trait AnyTerm {
-    fn looks_back(&self) -> bool;
     fn is_of_team(&self) -> bool;
     fn is_constant(&self, of: &dyn Constants) -> bool;
     fn formula(&self) -> Option<&str>;
@@ -96,10 +90,6 @@ pub(crate) trait AnyTerm {
 }
 
 impl<T: TermPart> AnyTerm for T {
-    fn looks_back(&self) -> bool {
-        TermPart::looks_back(self)
-    }
-
     fn is_of_team(&self) -> bool {
         TermPart::is_of_team(self)
     }

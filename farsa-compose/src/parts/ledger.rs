@@ -51,8 +51,8 @@ pub(crate) struct Ledger {
 }
 
 impl Ledger {
-    /// Builds the terms of a document with these robots. `of_steps` is true for terms that depend on the previous
-    /// step. The formulas of conditions are about these robots, by default all.
+    /// Builds the terms of a document with these robots. `of_steps` is true for terms with a state that each
+    /// step updates. The formulas of conditions are about these robots, by default all.
     pub(crate) fn new(
         document: &Document,
         of_steps: &[bool],

@@ -47,8 +47,4 @@ impl TermPart for Angle {
     fn term(&self, scene: &PartScene<'_>) -> Result<AngleTerm, Error> {
         Ok(AngleTerm(scene.0.robot(), Place::new(&self.object, scene)?))
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }

@@ -94,10 +94,6 @@ impl TermPart for InArea {
         }
         Ok(InAreaTerm(scene.0.robot(), all))
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for FullestArea {
@@ -105,10 +101,6 @@ impl TermPart for FullestArea {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<FullestAreaTerm, Error> {
         Ok(FullestAreaTerm(scene.0.areas(&self.area, "area")?))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 
     fn is_of_team(&self) -> bool {
@@ -121,10 +113,6 @@ impl TermPart for RobotsInArea {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<RobotsInAreaTerm, Error> {
         Ok(RobotsInAreaTerm(scene.0.areas(&self.area, "area")?))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 
     fn is_of_team(&self) -> bool {

@@ -58,52 +58,25 @@ impl<W: ?Sized> Term<W> for TimeLeftTerm {
     }
 }
 
-impl TermPart for Steps {
-    type Term = ClockTerm;
+macro_rules! of_clock {
+    ($($name:ident, $value:expr;)*) => {
+        $(impl TermPart for $name {
+            type Term = ClockTerm;
 
-    fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
-        Ok(ClockTerm(|_| 1.0))
-    }
+            fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
+                Ok(ClockTerm($value))
+            }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_constant(&self, _: &dyn Constants) -> bool {
-        true
-    }
+            fn is_constant(&self, _: &dyn Constants) -> bool {
+                true
+            }
+        })*
+    };
 }
-
-impl TermPart for Step {
-    type Term = ClockTerm;
-
-    fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
-        Ok(ClockTerm(|now| f64::from(now.steps)))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_constant(&self, _: &dyn Constants) -> bool {
-        true
-    }
-}
-
-impl TermPart for Time {
-    type Term = ClockTerm;
-
-    fn term(&self, _: &PartScene<'_>) -> Result<ClockTerm, Error> {
-        Ok(ClockTerm(|now| f64::from(now.steps) * now.time_step))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_constant(&self, _: &dyn Constants) -> bool {
-        true
-    }
+of_clock! {
+    Steps, |_| 1.0;
+    Step, |now| f64::from(now.steps);
+    Time, |now| f64::from(now.steps) * now.time_step;
 }
 
 impl TermPart for TimeLeft {
@@ -112,10 +85,6 @@ impl TermPart for TimeLeft {
     fn term(&self, scene: &PartScene<'_>) -> Result<TimeLeftTerm, Error> {
         let [first, end] = scene.0.group(&self.rest, "rest")?;
         Ok(TimeLeftTerm { is_rest: (first..end).contains(&scene.0.robot()) })
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 
     fn is_constant(&self, _: &dyn Constants) -> bool {

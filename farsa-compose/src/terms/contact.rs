@@ -119,10 +119,6 @@ impl TermPart for Gap {
     fn term(&self, scene: &PartScene<'_>) -> Result<GapTerm, Error> {
         GapTerm::new(&self.object, scene)
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for Contact {
@@ -134,9 +130,5 @@ impl TermPart for Contact {
         }
         let body = scene.planar()?.parts.body;
         Ok(ContactTerm::Planar { gap: GapTerm::new(&self.object, scene)?, body, within: self.within })
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 }

@@ -40,66 +40,29 @@ impl<W: ?Sized> Term<W> for GatheringTerm {
     }
 }
 
-impl TermPart for Dispersion {
-    type Term = GatheringTerm;
+macro_rules! of_gathering {
+    ($($name:ident, $value:expr;)*) => {
+        $(impl TermPart for $name {
+            type Term = GatheringTerm;
 
-    fn term(&self, scene: &PartScene<'_>) -> Result<GatheringTerm, Error> {
-        Ok(GatheringTerm(scene.planar()?.robot.radius, |found, _| found.dispersion))
-    }
+            fn term(&self, scene: &PartScene<'_>) -> Result<GatheringTerm, Error> {
+                Ok(GatheringTerm(scene.planar()?.robot.radius, $value))
+            }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
+            fn is_of_team(&self) -> bool {
+                true
+            }
 
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.is_alone()
-    }
+            fn is_constant(&self, of: &dyn Constants) -> bool {
+                of.is_alone()
+            }
+        })*
+    };
 }
-
-impl TermPart for Clusters {
-    type Term = GatheringTerm;
-
-    fn term(&self, scene: &PartScene<'_>) -> Result<GatheringTerm, Error> {
-        Ok(GatheringTerm(scene.planar()?.robot.radius, |found, _| found.clusters as f64))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.is_alone()
-    }
-}
-
-impl TermPart for LargestCluster {
-    type Term = GatheringTerm;
-
-    fn term(&self, scene: &PartScene<'_>) -> Result<GatheringTerm, Error> {
-        Ok(GatheringTerm(scene.planar()?.robot.radius, |found, now| {
-            found.largest as f64 / now.poses.len().max(1) as f64
-        }))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.is_alone()
-    }
+of_gathering! {
+    Dispersion, |found, _| found.dispersion;
+    Clusters, |found, _| found.clusters as f64;
+    LargestCluster, |found, now| found.largest as f64 / now.poses.len().max(1) as f64;
 }
 
 /// The number of the robot, and the arena's diagonal [m].
@@ -127,10 +90,6 @@ impl TermPart for NearOthers {
         scene.planar()?;
         let [width, depth] = scene.0.size();
         Ok(NearOthersTerm(scene.0.robot(), Scalar::sqrt(width * width + depth * depth)))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 
     fn is_constant(&self, of: &dyn Constants) -> bool {

@@ -105,10 +105,6 @@ impl TermPart for Displacement {
             None => DisplacementTerm::Spatial(point, [0.0; 3]),
         })
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for Moved {
@@ -119,10 +115,6 @@ impl TermPart for Moved {
             Some(_) => MovedTerm::Planar(Place::new(&self.object, scene)?, Pose::identity()),
             None => MovedTerm::Spatial(scene.0.target(&self.object, "object")?, [0.0; 3]),
         })
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 
     fn is_constant(&self, of: &dyn Constants) -> bool {

@@ -130,10 +130,6 @@ impl TermPart for Distance {
     fn term(&self, scene: &PartScene<'_>) -> Result<DistanceTerm, Error> {
         DistanceTerm::new(&self.object, self.body.as_ref(), self.point, scene)
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for Approach {
@@ -142,9 +138,5 @@ impl TermPart for Approach {
     fn term(&self, scene: &PartScene<'_>) -> Result<ApproachTerm, Error> {
         let distance = DistanceTerm::new(&self.object, self.body.as_ref(), self.point, scene)?;
         Ok(ApproachTerm { distance, far: 0.0 })
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 }

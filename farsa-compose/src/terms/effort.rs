@@ -53,10 +53,6 @@ impl TermPart for Effort {
     fn term(&self, scene: &PartScene<'_>) -> Result<EffortTerm, Error> {
         Ok(EffortTerm(scene.0.robot()))
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for Control {
@@ -64,9 +60,5 @@ impl TermPart for Control {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<ControlTerm, Error> {
         Ok(ControlTerm(scene.0.robot()))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 }

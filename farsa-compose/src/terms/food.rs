@@ -53,91 +53,35 @@ fn with_food(scene: &PartScene<'_>) -> Result<(), Error> {
     if scene.0.has_food() { Ok(()) } else { Err(scene.error("needs the section `foraging`, which there is not")) }
 }
 
-impl TermPart for Food {
-    type Term = FoodTerm;
+macro_rules! of_food {
+    ($($name:ident, $value:expr, $constant:expr;)*) => {
+        $(impl TermPart for $name {
+            type Term = FoodTerm;
 
-    fn term(&self, scene: &PartScene<'_>) -> Result<FoodTerm, Error> {
-        with_food(scene)?;
-        Ok(FoodTerm(|stock| f64::from(stock.collected())))
-    }
+            fn term(&self, scene: &PartScene<'_>) -> Result<FoodTerm, Error> {
+                with_food(scene)?;
+                Ok(FoodTerm($value))
+            }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
+            fn is_of_team(&self) -> bool {
+                true
+            }
 
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.foraging()[0]
-    }
+            fn is_constant(&self, of: &dyn Constants) -> bool {
+                let [no_food, no_cost] = of.foraging();
+                ($constant)(no_food, no_cost)
+            }
+        })*
+    };
+}
+of_food! {
+    Food, |stock| f64::from(stock.collected()), |no_food, _| no_food;
+    CarriedFood, |stock| f64::from(stock.carried()), |no_food, _| no_food;
+    LostFood, |stock| f64::from(stock.lost()), |no_food, no_cost| no_food || no_cost;
+    Deaths, |stock| stock.deaths() as f64, |_, no_cost| no_cost;
 }
 
-impl TermPart for CarriedFood {
-    type Term = FoodTerm;
-
-    fn term(&self, scene: &PartScene<'_>) -> Result<FoodTerm, Error> {
-        with_food(scene)?;
-        Ok(FoodTerm(|stock| f64::from(stock.carried())))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.foraging()[0]
-    }
-}
-
-impl TermPart for LostFood {
-    type Term = FoodTerm;
-
-    fn term(&self, scene: &PartScene<'_>) -> Result<FoodTerm, Error> {
-        with_food(scene)?;
-        Ok(FoodTerm(|stock| f64::from(stock.lost())))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.foraging().contains(&true)
-    }
-}
-
-impl TermPart for Deaths {
-    type Term = FoodTerm;
-
-    fn term(&self, scene: &PartScene<'_>) -> Result<FoodTerm, Error> {
-        with_food(scene)?;
-        Ok(FoodTerm(|stock| stock.deaths() as f64))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_of_team(&self) -> bool {
-        true
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.foraging()[1]
-    }
-}
-
-/// The number of the robot, and a number of its energy and life.
+/// The number of the robot, and a function of energy and life.
 #[derive(Clone, Debug)]
 pub(super) struct EnergyTerm(usize, fn((f64, bool)) -> f64);
 
@@ -151,36 +95,24 @@ impl<W: ?Sized> Term<W> for EnergyTerm {
     }
 }
 
-impl TermPart for Energy {
-    type Term = EnergyTerm;
+macro_rules! of_energy {
+    ($($name:ident, $value:expr;)*) => {
+        $(impl TermPart for $name {
+            type Term = EnergyTerm;
 
-    fn term(&self, scene: &PartScene<'_>) -> Result<EnergyTerm, Error> {
-        with_food(scene)?;
-        Ok(EnergyTerm(scene.0.robot(), |(energy, _)| energy))
-    }
+            fn term(&self, scene: &PartScene<'_>) -> Result<EnergyTerm, Error> {
+                with_food(scene)?;
+                Ok(EnergyTerm(scene.0.robot(), $value))
+            }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.foraging()[1]
-    }
+            fn is_constant(&self, of: &dyn Constants) -> bool {
+                let [_, no_cost] = of.foraging();
+                no_cost
+            }
+        })*
+    };
 }
-
-impl TermPart for Alive {
-    type Term = EnergyTerm;
-
-    fn term(&self, scene: &PartScene<'_>) -> Result<EnergyTerm, Error> {
-        with_food(scene)?;
-        Ok(EnergyTerm(scene.0.robot(), |(_, alive)| yes(alive)))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
-
-    fn is_constant(&self, of: &dyn Constants) -> bool {
-        of.foraging()[1]
-    }
+of_energy! {
+    Energy, |(energy, _)| energy;
+    Alive, |(_, alive)| yes(alive);
 }

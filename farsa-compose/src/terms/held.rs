@@ -35,10 +35,6 @@ impl TermPart for Held {
         Ok(HeldTerm(scene.planar()?.parts.body))
     }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
-
     fn is_constant(&self, of: &dyn Constants) -> bool {
         !of.pulls()
     }

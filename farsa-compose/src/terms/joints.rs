@@ -79,10 +79,6 @@ impl TermPart for JointSpeed {
         Ok(SpeedOfJoints(scene.0.joints(&self.joints)?))
     }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
-
     fn joints(&self) -> Option<&[String]> {
         Some(&self.joints)
     }
@@ -95,10 +91,6 @@ impl TermPart for JointPosition {
         Ok(PositionOfJoint(scene.0.one_joint(&self.joint)?))
     }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
-
     fn joints(&self) -> Option<&[String]> {
         Some(std::slice::from_ref(&self.joint))
     }
@@ -109,10 +101,6 @@ impl TermPart for JointVelocity {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<VelocityOfJoint, Error> {
         Ok(VelocityOfJoint(scene.0.one_joint(&self.joint)?))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 
     fn joints(&self) -> Option<&[String]> {

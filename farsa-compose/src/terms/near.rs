@@ -86,8 +86,4 @@ impl TermPart for Near {
         // Distances are those of centers, so the reach of the thing is a part of the limit.
         Ok(NearTerm::Spatial { thing, from, within: reach + self.within })
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }

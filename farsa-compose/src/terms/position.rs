@@ -98,10 +98,6 @@ impl TermPart for Position {
         let robot = scene.mobile_robot().map(|_| scene.0.robot());
         Ok(PositionTerm(robot, point, direction(self.along, scene)?))
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for Height {
@@ -110,10 +106,6 @@ impl TermPart for Height {
     fn term(&self, scene: &PartScene<'_>) -> Result<HeightTerm, Error> {
         Ok(HeightTerm(scene.0.part_or_thing(self.body.as_ref(), self.point)?))
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 impl TermPart for Upright {
@@ -121,9 +113,5 @@ impl TermPart for Upright {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<UprightTerm, Error> {
         Ok(UprightTerm(scene.0.frame(self.body.as_ref(), "body")?.0))
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 }

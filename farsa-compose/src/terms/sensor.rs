@@ -38,10 +38,6 @@ impl TermPart for Sensor {
         Ok(SensorTerm(scene.0.robot(), scene.0.sensor_channels(&self.sensor, "sensor")?))
     }
 
-    fn looks_back(&self) -> bool {
-        false
-    }
-
     fn is_constant(&self, of: &dyn Constants) -> bool {
         of.is_constant(&self.sensor)
     }

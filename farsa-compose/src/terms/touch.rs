@@ -38,8 +38,4 @@ impl TermPart for Touch {
     fn term(&self, scene: &PartScene<'_>) -> Result<TouchTerm, Error> {
         Ok(TouchTerm(scene.0.touching(&self.bodies, self.with.as_ref())?))
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }

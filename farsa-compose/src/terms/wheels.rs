@@ -57,10 +57,6 @@ impl TermPart for WheelSpeed {
     fn term(&self, scene: &PartScene<'_>) -> Result<SpeedOfWheels, Error> {
         Wheels::new(scene).map(SpeedOfWheels)
     }
-
-    fn looks_back(&self) -> bool {
-        false
-    }
 }
 
 /// The difference of the speeds.
@@ -83,10 +79,6 @@ impl TermPart for WheelDifference {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<DifferenceOfWheels, Error> {
         Wheels::new(scene).map(DifferenceOfWheels)
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 }
 
@@ -111,9 +103,5 @@ impl TermPart for StraightOn {
 
     fn term(&self, scene: &PartScene<'_>) -> Result<SimilarityOfWheels, Error> {
         Wheels::new(scene).map(SimilarityOfWheels)
-    }
-
-    fn looks_back(&self) -> bool {
-        false
     }
 }

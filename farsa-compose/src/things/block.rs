@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Object, Shape};
 use crate::part::ThingPart;
+use crate::things::{grey, half};
 
 /// A movable box, not in the engine `arena`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -24,14 +25,6 @@ pub(super) struct Block {
     #[serde(default = "grey")]
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     color: [f64; 3],
-}
-
-fn grey() -> [f64; 3] {
-    [0.5; 3]
-}
-
-fn half() -> f64 {
-    0.5
 }
 
 impl ThingPart for Block {

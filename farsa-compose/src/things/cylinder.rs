@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Object, Shape};
 use crate::part::ThingPart;
+use crate::things::{grey, height};
 
 /// An upright cylinder, optionally a lamp.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -25,14 +26,6 @@ pub(super) struct Cylinder {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e6))]
     lamp: f64,
-}
-
-fn height() -> f64 {
-    0.1
-}
-
-fn grey() -> [f64; 3] {
-    [0.5; 3]
 }
 
 impl ThingPart for Cylinder {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Object, Shape};
 use crate::part::ThingPart;
+use crate::things::grey;
 
 /// A visible place without contacts, for experiments with joints.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -18,10 +19,6 @@ pub(super) struct Marker {
     #[serde(default = "grey")]
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     color: [f64; 3],
-}
-
-fn grey() -> [f64; 3] {
-    [0.5; 3]
 }
 
 fn small() -> f64 {

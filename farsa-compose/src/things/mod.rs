@@ -31,3 +31,18 @@ pub(crate) fn things() -> Vec<Part> {
         thing::<rectangle::Rectangle>("rectangle"),
     ]
 }
+
+/// Color of things.
+fn grey() -> [f64; 3] {
+    [0.5; 3]
+}
+
+/// Coefficient of friction.
+fn half() -> f64 {
+    0.5
+}
+
+/// Height of cylinders and walls [m].
+fn height() -> f64 {
+    0.1
+}

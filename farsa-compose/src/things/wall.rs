@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::{Object, Shape};
 use crate::part::ThingPart;
+use crate::things::{grey, height};
 
 /// A fixed box.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -21,14 +22,6 @@ pub(super) struct Wall {
     #[serde(default = "grey")]
     #[schemars(inner(range(min = 0.0, max = 1.0)))]
     color: [f64; 3],
-}
-
-fn height() -> f64 {
-    0.1
-}
-
-fn grey() -> [f64; 3] {
-    [0.5; 3]
 }
 
 impl ThingPart for Wall {

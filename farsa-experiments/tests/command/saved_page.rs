@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::live::{asked, data, evolving, opened, parsed};
 use crate::tool::{farsa, ok, say, scratch};
 
-/// Content of the file that a page saves of its evolution.
+/// Content of the file in which a page saves an evolution.
 pub(crate) fn saved_run(live: &Value, mark: &Value) -> Value {
     let mut saved = json!({ "format": "farsa-saved-run", "version": 1, "config": live["script"]["config"] });
     for key in ["generation", "state_crc32"] {

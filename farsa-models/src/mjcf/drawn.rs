@@ -31,7 +31,8 @@ pub(crate) struct MeshGeom<'t> {
 }
 
 impl<'t> MeshGeom<'t> {
-    /// Gets the mesh of a geom in a group that is shown or with a collider, unless it is transparent. Its frame is at `frame` in its segment's.
+    /// Gets the mesh of a geom in a group that is shown or with a collider, unless it is transparent. The frame of its
+    /// body is at `frame` in the segment.
     pub(crate) fn new(
         (classed, compiler, model): (&Classed<'t, '_>, &Compiler, Element<'t>),
         (body, frame): (Option<BodyId>, &Pose<f64>),

@@ -227,9 +227,9 @@ fn trials_with_every_strategy_can_be_measured() {
             let patience =
                 [1e-3, 1.0, 60.0].iter().filter_map(|&time| bench(&plan, &sample, pool(&plan, 2), time).ok());
             let mut all = patience.map(|bench| serde_json::to_value(bench).unwrap());
-            let told = all.find(|told| told["trials"].as_u64().unwrap() > 0).unwrap();
-            let rounds = told["rounds"].as_u64().unwrap();
-            assert!(rounds == 0 || told["trials"].as_u64().unwrap() >= rounds * u64::from(trials), "{told}");
+            let measured = all.find(|measured| measured["trials"].as_u64().unwrap() > 0).unwrap();
+            let rounds = measured["rounds"].as_u64().unwrap();
+            assert!(rounds == 0 || measured["trials"].as_u64().unwrap() >= rounds * u64::from(trials), "{measured}");
         }
     }
     fs::remove_dir_all(root).unwrap();
