@@ -84,7 +84,8 @@ pub trait Joints: Handles {
 /// Access to actuators that accept commands.
 #[diagnostic::on_unimplemented(message = "`{Self}` has no actuators to command (port `Actuated`)")]
 pub trait Actuated: Handles {
-    /// Sets the command of an actuator. It remains active until the next command.
+    /// Sets the command of an actuator. It remains active until the next command. An actuator with a
+    /// [`command_range`](crate::robot::Actuator::command_range) clamps the first value.
     ///
     /// A muscle pair uses both values as the activations of agonist and antagonist in [0..1]. Most other actuators
     /// ignore the second value. For a servo, the first value is the desired position (in radians or meters). For a

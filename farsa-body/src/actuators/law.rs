@@ -62,6 +62,12 @@ pub enum Law<R> {
     Held(Held<R>),
 }
 
+/// Clamps the first command of an actuator to its range. NaN does not change.
+#[inline(always)]
+pub fn clamp_command<S: Scalar>([low, high]: [S::Real; 2], command: S) -> S {
+    command.like(high).min(command.like(low).max(command))
+}
+
 impl<R: Real> Servo<R> {
     /// Computes the effort at position `q` and speed `qdot`. The desired position is `command[0]`.
     ///
@@ -215,6 +221,16 @@ mod tests {
             assert!((wide.torque - f64::from(narrow.torque)).abs() < 1e-5);
             assert!((wide.stiffness - f64::from(narrow.stiffness)).abs() < 1e-5);
         }
+    }
+
+    #[test]
+    fn commands_stay_within_their_range() {
+        let clamped = |command: f64| clamp_command([-0.5, 2.0], command);
+        for (command, expected) in [(-0.75, -0.5), (-0.5, -0.5), (0.25, 0.25), (2.0, 2.0), (f64::INFINITY, 2.0)] {
+            assert_eq!(clamped(command), expected);
+        }
+        assert!(clamped(f64::NAN).is_nan(), "a lost command stays lost");
+        assert_eq!(clamp_command([f64::NEG_INFINITY, 1.0], -1e300), -1e300);
     }
 
     #[test]

@@ -19,5 +19,5 @@ pub(crate) mod law;
 pub(crate) mod muscle;
 
 pub use effort::Effort;
-pub use law::{Held, Law, Servo, Torque, Velocity};
+pub use law::{Held, Law, Servo, Torque, Velocity, clamp_command};
 pub use muscle::{MusclePair, MuscleVariant, Tension};

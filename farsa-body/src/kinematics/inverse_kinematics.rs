@@ -307,7 +307,8 @@ mod tests {
     use crate::kinematics::tree::sub;
     use crate::kinematics::tree::tests::{Q, tree};
     use crate::ports::BodyId;
-    use crate::robot::description::{Joint, Robot, Segment};
+    use crate::robot::description::{Robot, Segment};
+    use crate::robot::joint::Joint;
     use crate::robot::mass_properties::MassProperties;
     use nalgebra::{SMatrix, SVector};
 

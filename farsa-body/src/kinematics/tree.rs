@@ -7,7 +7,8 @@ use farsa_num::sin_cos;
 
 use crate::ports::{BodyId, JointId};
 use crate::pose::{Pose, cross, norm};
-use crate::robot::description::{JointKind, Robot};
+use crate::robot::description::Robot;
+use crate::robot::joint::JointKind;
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::validation::RobotError;
 
@@ -218,7 +219,8 @@ impl KinematicTree {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::robot::description::{Joint, Segment};
+    use crate::robot::description::Segment;
+    use crate::robot::joint::Joint;
     use alloc::format;
     use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 

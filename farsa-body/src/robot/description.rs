@@ -7,43 +7,11 @@ use alloc::vec::Vec;
 use crate::actuators::law::Law;
 use crate::ports::{ActuatorId, BodyId, JointId, PairId};
 use crate::pose::{Pose, norm};
+use crate::robot::impedance::Impedance;
+use crate::robot::joint::Joint;
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robot::visual::Visual;
-
-/// The kind of motion between a segment and its parent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-pub enum JointKind {
-    /// The segment turns about the axis of the joint.
-    Revolute,
-    /// The segment slides along the axis of the joint.
-    Prismatic,
-    /// The segment cannot move.
-    Fixed,
-    /// The segment moves freely in the world. It must not have a parent.
-    Floating,
-}
-
-/// The joint that connects a segment to its parent.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Joint {
-    /// Name of the joint, unique in the robot. It may be empty for fixed and floating joints.
-    pub name: String,
-    /// Kind of motion that the joint permits.
-    pub kind: JointKind,
-    /// Axis in the frame of the joint. It does not have to be normalized, but it must be longer than 1e-6.
-    pub axis: [f64; 3],
-    /// Frame of the joint at position 0, relative to the parent or the world.
-    pub placement: Pose<f64>,
-    /// Lowest and highest position in radians or meters. They may be infinite.
-    pub range: [f64; 2],
-    /// Inertia of the drive (in kg m2 or kg). It is added to the inertia of the segment.
-    pub armature: f64,
-    /// Viscous damping of the joint (in N m s/rad or N s/m).
-    pub damping: f64,
-}
 
 /// A rigid part of the robot, together with its joint. Its frame moves with the joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,6 +76,40 @@ pub struct Pair {
     /// and all second colliders are far apart. Groups do not change the motion.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub group: Option<u16>,
+    /// Further properties of contacts that act like those of MuJoCo.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub soft: Option<SoftContact>,
+    /// Coefficient of restitution in [0..1], the share of the normal speed that is left after a fast impact. URDF and MJCF
+    /// have none.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::robot::joint::is_zero"))]
+    pub restitution: f64,
+}
+
+/// Properties of contacts that stop motion gradually, like those of MuJoCo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SoftContact {
+    /// Inertia that a touching point adds along its normal (in kg).
+    pub inertia: f64,
+    /// Damping and inertia with which friction stops a point, as long as it is below its limit (in N s/m and kg).
+    pub friction: [f64; 2],
+    /// Distance of the surfaces at which the contact begins and its depth is 0 (in meters).
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::robot::joint::is_zero"))]
+    pub margin: f64,
+    /// True for MuJoCo's pyramid of four edges instead of a round cone of friction. Each edge is a separate contact along
+    /// the normal plus or minus a tangent times the friction, with a quarter of spring, damper and inertia. A point that
+    /// slides is lifted.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_false"))]
+    pub is_pyramid: bool,
+    /// Impedance over the depth, which otherwise is constant.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub impedance: Option<Impedance>,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_false(x: &bool) -> bool {
+    !*x
 }
 
 /// An actuator that drives a joint.
@@ -120,6 +122,9 @@ pub struct Actuator {
     pub joint: JointId,
     /// Law that determines the torque.
     pub law: Law<f64>,
+    /// Lowest and highest first command, in the unit of the law's command. Worlds clamp commands to it.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub command_range: Option<[f64; 2]>,
 }
 
 /// The ground below a body that slides in a plane. It exerts friction on the body.
@@ -200,53 +205,6 @@ impl Offsets {
     }
 }
 
-impl JointKind {
-    /// Returns true if the joint has exactly one degree of freedom.
-    pub fn is_single(self) -> bool {
-        matches!(self, Self::Revolute | Self::Prismatic)
-    }
-}
-
-impl Joint {
-    fn new(name: &str, kind: JointKind, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
-        Self { name: name.into(), kind, axis, placement, range, armature: 0.0, damping: 0.0 }
-    }
-
-    /// Creates a joint that turns about `axis` within `range` (in radians). It has no armature and no damping.
-    pub fn revolute(name: &str, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
-        Self::new(name, JointKind::Revolute, axis, placement, range)
-    }
-
-    /// Creates a joint that slides along `axis` within `range` (in meters). It has no armature and no damping.
-    pub fn prismatic(name: &str, axis: [f64; 3], placement: Pose<f64>, range: [f64; 2]) -> Self {
-        Self::new(name, JointKind::Prismatic, axis, placement, range)
-    }
-
-    /// Creates a joint that cannot move. Its name is empty.
-    pub fn fixed(placement: Pose<f64>) -> Self {
-        Self::new("", JointKind::Fixed, [0.0, 0.0, 1.0], placement, [0.0, 0.0])
-    }
-
-    /// Creates a joint for a segment that moves freely in the world and starts at `placement`. Its name is empty.
-    pub fn floating(placement: Pose<f64>) -> Self {
-        Self::new("", JointKind::Floating, [0.0, 0.0, 1.0], placement, [0.0, 0.0])
-    }
-
-    /// Sets the armature (in kg m2 or kg).
-    #[must_use]
-    pub fn with_armature(mut self, armature: f64) -> Self {
-        self.armature = armature;
-        self
-    }
-
-    /// Sets the viscous damping (in N m s/rad or N s/m).
-    #[must_use]
-    pub fn with_damping(mut self, damping: f64) -> Self {
-        self.damping = damping;
-        self
-    }
-}
-
 impl Segment {
     /// Creates a segment with the given mass properties. The parent is `None` for the world.
     pub fn new(name: &str, parent: Option<BodyId>, joint: Joint, body: MassProperties) -> Self {
@@ -314,7 +272,7 @@ impl Robot {
 
     /// Adds a pair of colliders that may touch. They are given by their indices.
     pub fn add_pair(&mut self, colliders: [usize; 2], surface: Surface) -> PairId {
-        self.pairs.push(Pair { colliders, surface, group: None });
+        self.pairs.push(Pair { colliders, surface, group: None, soft: None, restitution: 0.0 });
         PairId((self.pairs.len() - 1) as u16)
     }
 
@@ -323,7 +281,13 @@ impl Robot {
     /// the parts of a hand.
     pub fn add_pair_group(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>, surface: Surface) {
         let group = Some(self.first_group());
-        self.pairs.extend(pairs.into_iter().map(|colliders| Pair { colliders, surface, group }));
+        self.pairs.extend(pairs.into_iter().map(|colliders| Pair {
+            colliders,
+            surface,
+            group,
+            soft: None,
+            restitution: 0.0,
+        }));
     }
 
     /// A number that no group has.
@@ -333,7 +297,7 @@ impl Robot {
 
     /// Adds an actuator that drives `joint`. The efforts of all actuators of a joint add up.
     pub fn add_actuator(&mut self, name: &str, joint: JointId, law: Law<f64>) -> ActuatorId {
-        self.actuators.push(Actuator { name: name.into(), joint, law });
+        self.actuators.push(Actuator { name: name.into(), joint, law, command_range: None });
         ActuatorId((self.actuators.len() - 1) as u16)
     }
 

@@ -46,7 +46,8 @@ mod tests {
     use super::*;
     use crate::ports::BodyId;
     use crate::pose::Pose;
-    use crate::robot::description::{Joint, Segment};
+    use crate::robot::description::Segment;
+    use crate::robot::joint::Joint;
     use crate::robot::mass_properties::MassProperties;
     use crate::robot::shape::Shape;
     use alloc::string::ToString;

@@ -3,11 +3,11 @@
 use farsa_num::sin_cos;
 
 use crate::pose::{Pose, norm};
-use crate::robot::description::{Joint, JointKind};
+use crate::robot::joint::{Joint, JointKind};
 
 impl Joint {
     /// Returns a fixed joint that replaces this joint at the given position (in radians or meters). It has no name, no
-    /// armature and no damping.
+    /// armature, damping, spring, friction or largest speed.
     ///
     /// Fixed and floating joints do not have a position. They are fixed at their placement.
     #[must_use]

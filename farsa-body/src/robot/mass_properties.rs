@@ -59,6 +59,7 @@ impl MassProperties {
         match *shape {
             Shape::Sphere { radius } => Self::sphere(mass, radius),
             Shape::Capsule { radius, half_length } => Self::capsule(mass, radius, half_length),
+            Shape::Cylinder { radius, half_length } => Self::cylinder(mass, radius, half_length),
             Shape::Box { half } => Self::cuboid(mass, half),
             Shape::Plane => Self::diagonal(mass, [0.0; 3]),
         }

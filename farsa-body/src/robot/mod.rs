@@ -18,6 +18,10 @@
 pub(crate) mod description;
 /// Shapes that views draw: visuals, and colliders without a visual.
 mod drawn;
+/// Impedance of contacts and stops over their depth.
+mod impedance;
+/// Joints and their laws.
+pub(crate) mod joint;
 /// Joints that are held for good.
 mod locked;
 /// Mass, center of mass and inertia of solid bodies: computed, moved, joined.
@@ -33,7 +37,9 @@ pub(crate) mod validation;
 /// A shape that is drawn.
 pub(crate) mod visual;
 
-pub use description::{Actuator, Collider, Ground, Joint, JointKind, Offsets, Pair, Robot, Segment, Surface};
+pub use description::{Actuator, Collider, Ground, Offsets, Pair, Robot, Segment, SoftContact, Surface};
+pub use impedance::Impedance;
+pub use joint::{Joint, JointKind, Stop};
 pub use mass_properties::MassProperties;
 pub use shape::Shape;
 pub use validation::{PairFault, RobotError};

@@ -2,7 +2,7 @@
 
 use alloc::collections::BTreeSet;
 
-use crate::robot::description::Robot;
+use crate::robot::description::{Robot, SoftContact};
 use crate::robot::shape::Shape;
 use crate::robot::validation::{PairFault, Part, RobotError, index};
 
@@ -24,7 +24,20 @@ impl Robot {
             if self.colliders[a].shape == Shape::Plane && self.colliders[b].shape == Shape::Plane {
                 return Err(RobotError::Pair { colliders: colliders(), fault: PairFault::Shapes });
             }
-            Part(&self.colliders[a].name).surface(&pair.surface)?;
+            let part = Part(&self.colliders[a].name);
+            part.surface(&pair.surface)?;
+            part.demand((0.0..=1.0).contains(&pair.restitution), "restitution", pair.restitution)?;
+            if let Some(SoftContact { inertia, friction: [damping, own], margin, is_pyramid, impedance }) = pair.soft {
+                part.not_negative("inertia of the contact", inertia)?;
+                part.not_negative("damping of friction", damping)?;
+                part.positive("inertia of friction", own)?;
+                part.not_negative("margin of the contact", margin)?;
+                part.impedance(impedance)?;
+                if is_pyramid {
+                    part.positive("friction of the pyramid", pair.surface.friction)?;
+                    part.demand(pair.restitution == 0.0, "restitution of a pyramid", pair.restitution)?;
+                }
+            }
         }
         Ok(())
     }

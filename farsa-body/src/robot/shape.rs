@@ -17,6 +17,14 @@ pub enum Shape {
         /// Half the length of its axis [m].
         half_length: f64,
     },
+    /// A solid cylinder about the z axis, between `-half_length` and `half_length`. It can touch spheres, capsules and
+    /// planes.
+    Cylinder {
+        /// Radius of the cylinder [m].
+        radius: f64,
+        /// Half its length [m].
+        half_length: f64,
+    },
     /// A box with its center at the origin.
     Box {
         /// Half the edge lengths along x, y and z [m].

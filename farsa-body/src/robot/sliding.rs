@@ -4,7 +4,8 @@ use alloc::format;
 
 use crate::ports::{BodyId, JointId};
 use crate::pose::{Pose, norm};
-use crate::robot::description::{Ground, Joint, JointKind, Robot, Segment};
+use crate::robot::description::{Ground, Robot, Segment};
+use crate::robot::joint::{Joint, JointKind};
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::validation::{Part, RobotError, index};
 

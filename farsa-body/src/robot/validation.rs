@@ -7,7 +7,9 @@ use core::fmt;
 
 use crate::actuators::law::Law;
 use crate::pose::{Pose, norm};
-use crate::robot::description::{JointKind, Robot, Segment, Surface};
+use crate::robot::description::{Robot, Segment, Surface};
+use crate::robot::impedance::Impedance;
+use crate::robot::joint::JointKind;
 use crate::robot::shape::Shape;
 
 /// An error in the description of a robot.
@@ -118,7 +120,7 @@ impl core::error::Error for RobotError {}
 pub(super) struct Part<'a>(pub(super) &'a str);
 
 impl Part<'_> {
-    fn demand(&self, ok: bool, field: &'static str, value: f64) -> Result<(), RobotError> {
+    pub(super) fn demand(&self, ok: bool, field: &'static str, value: f64) -> Result<(), RobotError> {
         if ok { Ok(()) } else { Err(RobotError::Value { part: self.0.into(), field, value }) }
     }
 
@@ -126,12 +128,26 @@ impl Part<'_> {
         self.demand(value.is_finite(), field, value)
     }
 
-    fn positive(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
+    pub(super) fn positive(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
         self.demand(value.is_finite() && value > 0.0, field, value)
     }
 
     pub(super) fn not_negative(&self, field: &'static str, value: f64) -> Result<(), RobotError> {
         self.demand(value.is_finite() && value >= 0.0, field, value)
+    }
+
+    pub(super) fn impedance(&self, law: Option<Impedance>) -> Result<(), RobotError> {
+        let Some(Impedance { surface, deep, width, midpoint, power }) = law else { return Ok(()) };
+        let shares = [
+            ("impedance at the surface", surface),
+            ("impedance at depth", deep),
+            ("midpoint of the impedance", midpoint),
+        ];
+        for (field, value) in shares {
+            self.demand(value > 0.0 && value < 1.0, field, value)?;
+        }
+        self.positive("width of the impedance", width)?;
+        self.demand(power == 1 || power == 2, "power of the impedance", power.into())
     }
 
     fn vector(&self, field: &'static str, vector: &[f64]) -> Result<(), RobotError> {
@@ -151,6 +167,10 @@ impl Part<'_> {
             Shape::Capsule { radius, half_length } => {
                 self.positive("radius", *radius)?;
                 self.not_negative("half length", *half_length)
+            }
+            Shape::Cylinder { radius, half_length } => {
+                self.positive("radius", *radius)?;
+                self.positive("half length", *half_length)
             }
             Shape::Box { half } => half.iter().try_for_each(|x| self.positive("half edge length", *x)),
             Shape::Plane => Ok(()),
@@ -244,6 +264,18 @@ fn segment(own_index: usize, segment: &Segment) -> Result<(), RobotError> {
     part.vector("inertia", &segment.inertia)?;
     part.not_negative("armature", joint.armature)?;
     part.not_negative("joint damping", joint.damping)?;
+    part.not_negative("joint stiffness", joint.stiffness)?;
+    part.finite("rest position", joint.rest)?;
+    part.not_negative("joint friction", joint.friction)?;
+    if let Some(speed) = joint.speed_limit {
+        part.positive("largest speed", speed)?;
+    }
+    if let Some(stop) = joint.stop {
+        part.positive("stiffness of the stops", stop.stiffness)?;
+        part.not_negative("damping of the stops", stop.damping)?;
+        part.not_negative("inertia of the stops", stop.inertia)?;
+        part.impedance(stop.impedance)?;
+    }
     if !segment.mass_properties().is_physical(joint.kind != JointKind::Fixed) {
         let Segment { name, mass, inertia, .. } = segment.clone();
         return Err(RobotError::Inertia { segment: name, mass, inertia });
@@ -316,6 +348,11 @@ impl Robot {
                 return Err(RobotError::Structure { why });
             }
             Part(&actuator.name).law(&actuator.law)?;
+            if let Some([low, high]) = actuator.command_range {
+                let part = Part(&actuator.name);
+                part.demand(low < f64::INFINITY, "lower end of the commands", low)?;
+                part.demand(high > f64::NEG_INFINITY && low <= high, "upper end of the commands", high)?;
+            }
         }
         self.validate_visuals()?;
         self.validate_pairs()?;
@@ -324,158 +361,5 @@ impl Robot {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::actuators::law::{Held, Servo, Torque, Velocity};
-    use crate::actuators::muscle::MusclePair;
-    use crate::ports::{BodyId, JointId};
-    use crate::robot::description::{Collider, Joint};
-    use crate::robot::mass_properties::MassProperties;
-    use alloc::format;
-    use alloc::string::ToString;
-    use alloc::vec::Vec;
-
-    fn good() -> Robot {
-        let mut r = Robot::new("good");
-        let at = Pose::at([0.0, 0.0, 0.1]);
-        let ball = MassProperties::sphere(1.0, 0.1);
-        let hinge = Joint::revolute("hinge", [0.0, 2.0, 0.0], at, [f64::NEG_INFINITY, f64::INFINITY]);
-        let arm = r.add_segment(Segment::new("arm", None, hinge, ball));
-        let slide = Joint::prismatic("slide", [1.0, 0.0, 0.0], at, [0.0, 0.1]);
-        r.add_segment(Segment::new("hand", Some(arm), slide, ball));
-        let skin = MassProperties::sphere(0.0, 0.0);
-        r.add_segment(Segment::new("skin", Some(arm), Joint::fixed(at), skin));
-        r.add_segment(Segment::new("thing", None, Joint::floating(at), ball));
-        let shapes = [
-            ("a", Some(BodyId(0)), Shape::Sphere { radius: 0.1 }),
-            ("b", Some(BodyId(1)), Shape::Capsule { radius: 0.1, half_length: 0.0 }),
-            ("c", Some(BodyId(3)), Shape::Box { half: [0.1; 3] }),
-            ("d", None, Shape::Plane),
-            ("e", Some(BodyId(2)), Shape::Plane),
-        ];
-        for (name, body, shape) in shapes {
-            r.add_collider(Collider::new(name, body, shape, at));
-        }
-        let surface = Surface { friction: 1.0, rolling_friction: 0.0, stiffness: 1e4, damping: 10.0 };
-        for pair in [[0, 1], [0, 2], [0, 3], [1, 2], [3, 1], [3, 2]] {
-            r.add_pair(pair, surface);
-        }
-        r.add_actuator("muscles", JointId(0), Law::MusclePair(MusclePair::thesis(300.0, 0.01, [-1.0, 1.0])));
-        r.add_actuator("servo", JointId(1), Law::Servo(Servo { stiffness: 1.0, damping: 0.1, limit: f64::INFINITY }));
-        r.add_actuator("torque", JointId(0), Law::Torque(Torque { limit: 1.0 }));
-        r.add_actuator("velocity", JointId(0), Law::Velocity(Velocity { gain: 1.0, limit: f64::INFINITY }));
-        r.add_actuator("held", JointId(0), Law::Held(Held { stiffness: 1.0, damping: 0.0 }));
-        r
-    }
-
-    fn fault(change: impl FnOnce(&mut Robot)) -> RobotError {
-        let mut robot = good();
-        change(&mut robot);
-        robot.validate().expect_err("a fault")
-    }
-
-    fn muscles(robot: &mut Robot) -> &mut MusclePair<f64> {
-        let Law::MusclePair(m) = &mut robot.actuators[0].law else { panic!("no muscles") };
-        m
-    }
-
-    #[test]
-    fn a_good_robot_passes() {
-        assert_eq!(good().validate(), Ok(()));
-        assert_eq!(Robot::default().validate(), Ok(()));
-    }
-
-    #[test]
-    fn faults_of_structure() {
-        let name = |s: &str| s.to_string();
-        let structure = |why: &str| RobotError::Structure { why: why.into() };
-        assert_eq!(
-            fault(|r| r.segments[1].parent = Some(BodyId(1))),
-            structure("segment hand: parent 1 is not an earlier segment")
-        );
-        let floating = structure("segment thing: a floating joint must not have a parent");
-        assert_eq!(fault(|r| r.segments[3].parent = Some(BodyId(0))), floating);
-        assert_eq!(fault(|r| r.segments[1].name = name("arm")), RobotError::Name { name: name("arm") });
-        assert_eq!(fault(|r| r.segments[1].joint.name = name("hinge")), RobotError::Name { name: name("hinge") });
-        assert_eq!(fault(|r| r.colliders[1].name = name("a")), RobotError::Name { name: name("a") });
-        assert_eq!(fault(|r| r.actuators[1].name = name("held")), RobotError::Name { name: name("held") });
-        assert_eq!(fault(|r| r.segments[1].name.clear()), structure("segment 1 has no name"));
-        assert_eq!(fault(|r| r.segments[1].joint.name.clear()), structure("joint 1 has no name"));
-        let body = RobotError::Index { part: name("a"), field: "body", index: 4, count: 4 };
-        assert_eq!(fault(|r| r.colliders[0].body = Some(BodyId(4))), body);
-        let joint = RobotError::Index { part: name("servo"), field: "joint", index: 9, count: 4 };
-        assert_eq!(fault(|r| r.actuators[1].joint = JointId(9)), joint);
-        assert_eq!(
-            fault(|r| r.actuators[1].joint = JointId(2)),
-            structure("actuator servo: the joint of segment skin neither turns nor slides")
-        );
-        let collider = RobotError::Index { part: name("a pair"), field: "collider", index: 5, count: 5 };
-        assert_eq!(fault(|r| r.pairs[0].colliders[1] = 5), collider);
-        let colliders = [name("b"), name("a")];
-        assert_eq!(fault(|r| r.pairs[1].colliders = [1, 0]), RobotError::Pair { colliders, fault: PairFault::Twice });
-        let colliders = [name("a"), name("a")];
-        assert_eq!(
-            fault(|r| r.pairs[0].colliders = [0, 0]),
-            RobotError::Pair { colliders, fault: PairFault::SameBody }
-        );
-        let colliders = [name("d"), name("e")];
-        assert_eq!(fault(|r| r.pairs[0].colliders = [3, 4]), RobotError::Pair { colliders, fault: PairFault::Shapes });
-        let many = fault(|r| r.pairs = alloc::vec![r.pairs[0]; 65536]);
-        assert_eq!(many, RobotError::Count { parts: "pairs", count: 65536 });
-    }
-
-    #[test]
-    fn faults_of_numbers() {
-        type Change = fn(&mut Robot);
-        let values: [(&str, Change); 30] = [
-            ("rotation", |r| r.segments[0].joint.placement.rotation[3] = 1.1),
-            ("rotation", |r| r.colliders[0].placement.rotation[0] = f64::NAN),
-            ("position", |r| r.colliders[0].placement.position[0] = f64::INFINITY),
-            ("mass", |r| r.segments[0].mass = -1.0),
-            ("mass", |r| r.segments[2].mass = f64::NAN),
-            ("centre of mass", |r| r.segments[0].centre[2] = f64::NAN),
-            ("inertia", |r| r.segments[0].inertia[5] = f64::NAN),
-            ("armature", |r| r.segments[0].joint.armature = -1.0),
-            ("joint damping", |r| r.segments[0].joint.damping = f64::NAN),
-            ("axis", |r| r.segments[0].joint.axis = [0.0; 3]),
-            ("axis", |r| r.segments[0].joint.axis[0] = f64::NAN),
-            ("radius", |r| r.colliders[0].shape = Shape::Sphere { radius: 0.0 }),
-            ("half length", |r| r.colliders[0].shape = Shape::Capsule { radius: 1.0, half_length: -1.0 }),
-            ("half edge length", |r| r.colliders[0].shape = Shape::Box { half: [1.0, 0.0, 1.0] }),
-            ("friction", |r| r.pairs[0].surface.friction = -0.1),
-            ("rolling friction", |r| r.pairs[0].surface.rolling_friction = f64::NAN),
-            ("contact stiffness", |r| r.pairs[0].surface.stiffness = 0.0),
-            ("contact damping", |r| r.pairs[0].surface.damping = -1.0),
-            ("tension", |r| muscles(r).tension = f64::NAN),
-            ("moment arm", |r| muscles(r).moment_arm = -0.01),
-            ("range", |r| muscles(r).upper = f64::INFINITY),
-            ("upper end of the range", |r| muscles(r).upper = muscles(r).lower),
-            ("rest length", |r| muscles(r).rest_length = 1.0),
-            ("longest length", |r| muscles(r).longest = 2.5),
-            ("shape", |r| muscles(r).shape = 0.0),
-            ("viscosity", |r| muscles(r).viscosity = -0.9),
-            ("limit", |r| r.actuators[2].law = Law::Torque(Torque { limit: f64::NAN })),
-            ("damping", |r| r.actuators[3].law = Law::Held(Held { stiffness: 1.0, damping: -1.0 })),
-            ("colour", |r| r.colliders[0].color = Some([0.0, 1.5, 0.0])),
-            ("gain", |r| r.actuators[3].law = Law::Velocity(Velocity { gain: -1.0, limit: 1.0 })),
-        ];
-        for (expected, change) in values {
-            let error = fault(change);
-            let RobotError::Value { part, field, .. } = &error else { panic!("{expected}: {error}") };
-            assert!(field.contains(expected), "{expected}: {error}");
-            assert_eq!(format!("{error}").find(part.as_str()), Some(0), "the message names the part");
-        }
-        for range in [[1.0, -1.0], [f64::NAN, 1.0], [f64::INFINITY; 2]] {
-            let error = fault(|r| r.segments[0].joint.range = range);
-            assert!(matches!(&error, RobotError::Range { joint, .. } if joint == "hinge"), "{error}");
-        }
-        let impossible: Vec<fn(&mut Robot)> =
-            alloc::vec![|r| r.segments[0].mass = 0.0, |r| r.segments[3].inertia = [0.0; 6], |r| r.segments[1]
-                .inertia =
-                [1.0, 1.0, 3.0, 0.0, 0.0, 0.0],];
-        for change in impossible {
-            let error = fault(change);
-            assert!(matches!(error, RobotError::Inertia { .. }), "{error}");
-        }
-    }
-}
+#[path = "validation_tests.rs"]
+mod tests;

@@ -7,7 +7,8 @@ use core::f64::consts::PI;
 use crate::actuators::law::{Law, Torque};
 use crate::ports::BodyId;
 use crate::pose::Pose;
-use crate::robot::description::{Collider, Joint, Robot, Segment, Surface};
+use crate::robot::description::{Collider, Robot, Segment, Surface};
+use crate::robot::joint::Joint;
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robots::mobile::MobileRobot;
@@ -132,7 +133,7 @@ const QUARTER_ABOUT_Y: [f64; 4] = [0.0, core::f64::consts::FRAC_1_SQRT_2, 0.0, c
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::description::JointKind;
+    use crate::robot::joint::JointKind;
 
     fn near(a: [f64; 3], b: [f64; 3]) -> bool {
         a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12)

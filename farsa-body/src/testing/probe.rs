@@ -4,7 +4,8 @@ use alloc::vec::Vec;
 
 use crate::actuators::law::Law;
 use crate::ports::{ActuatorId, BodyId, JointId};
-use crate::robot::description::{Actuator, JointKind, Robot};
+use crate::robot::description::{Actuator, Robot};
+use crate::robot::joint::JointKind;
 
 /// The parts of a world that the checks read and move, and the extent of the checks.
 #[derive(Clone, Debug, PartialEq)]

@@ -245,10 +245,10 @@ proptest! {
     }
 }
 
-/// The axis of a ball, a capsule or a box and the radius around it [m]. For a box, its smallest half from its middle.
+/// The axis of a ball, a capsule, a cylinder or a box and the radius around it [m]. For a box, its smallest half from its middle.
 fn axis(shape: &Shape, placement: &Pose<f64>) -> ([[f64; 3]; 2], f64) {
     let (half, radius) = match *shape {
-        Shape::Capsule { radius, half_length } => (half_length, radius),
+        Shape::Capsule { radius, half_length } | Shape::Cylinder { radius, half_length } => (half_length, radius),
         Shape::Sphere { radius } => (0.0, radius),
         Shape::Box { half } => (0.0, half.into_iter().fold(f64::INFINITY, f64::min)),
         Shape::Plane => panic!("a plane has no axis"),

@@ -6,6 +6,7 @@ use crate::articulated::collision::{
     PlacedShape, Point, ball_box, ball_plane, balls, corner, distance_to_box, nearest_of_segments, nearest_on_segment,
     segment_box,
 };
+use crate::articulated::cylinder::{Cylinder, ball_cylinder, rim, segment_cylinder};
 use crate::articulated::link::{LinkData, WORLD};
 use crate::articulated::model::{Geometry, Model, Pair};
 use crate::articulated::spatial::{Vector, add, dot, product, rotate, scale, splat, splat_matrix, sub};
@@ -39,7 +40,7 @@ pub(crate) fn place_colliders<S: Scalar>(
 /// The distance within which what closes at a speed is looked at [m], and a little more for turning.
 #[inline(always)]
 pub(crate) fn reach<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, h: S, approach: S) -> S {
-    S::splat(simd, model.margin) + h * (approach + h.constant(TURNING))
+    S::splat(simd, model.reach) + h * (approach + h.constant(TURNING))
 }
 
 /// Distance between a pair's bounds [m]. Nothing can touch while it is positive.
@@ -105,7 +106,8 @@ fn point<S: Scalar>(
     index: usize,
 ) -> Point<S> {
     // Spheres and capsules are balls swept over a point or a segment, corners of boxes the same with radius 0. Each pair
-    // reduces to a ball with a ball, a box or a plane. Shapes come in the order ball, capsule, block, plane.
+    // reduces to a ball with a ball, a box, a cylinder or a plane. Shapes come in the order ball, capsule, block, cylinder,
+    // plane.
     let [a, b] = pair.colliders;
     let (pa, pb) = (&placed[a], &placed[b]);
     match (model.colliders[a].geometry, model.colliders[b].geometry) {
@@ -118,6 +120,9 @@ fn point<S: Scalar>(
         }
         (Geometry::Ball { radius }, Geometry::Block { half }) => {
             ball_box(pa.position, S::splat(simd, radius), pb, splat::<S>(simd, half))
+        }
+        (Geometry::Ball { radius }, Geometry::Cylinder { radius: rb, half_length }) => {
+            ball_cylinder(pa.position, S::splat(simd, radius), pb, Cylinder::new(simd, rb, half_length))
         }
         (Geometry::Ball { radius }, Geometry::Plane) => ball_plane(pa.position, S::splat(simd, radius), pb),
         (Geometry::Capsule { radius: ra, half_length: la }, Geometry::Capsule { radius: rb, half_length: lb }) => {
@@ -140,11 +145,25 @@ fn point<S: Scalar>(
                 segment_box(pa.position, pa.axis(), S::splat(simd, half_length), S::splat(simd, radius), pb, half)
             }
         }
+        (Geometry::Capsule { radius, half_length }, Geometry::Cylinder { radius: rb, half_length: lb }) => {
+            // As with a box.
+            let (length, radius) = (S::splat(simd, half_length), S::splat(simd, radius));
+            let cylinder = Cylinder::new(simd, rb, lb);
+            if index < 2 {
+                ball_cylinder(end(pa, index, length), radius, pb, cylinder)
+            } else {
+                segment_cylinder(pa.position, pa.axis(), length, radius, pb, cylinder)
+            }
+        }
         (Geometry::Capsule { radius, half_length }, _) => {
             ball_plane(end(pa, index, S::splat(simd, half_length)), S::splat(simd, radius), pb)
         }
         (Geometry::Block { half }, _) => {
             ball_plane(corner(pa, splat::<S>(simd, half), index), S::splat(simd, S::Real::from_f64(0.0)), pb)
+        }
+        (Geometry::Cylinder { radius, half_length }, _) => {
+            let rim = rim(pa, Cylinder::new(simd, radius, half_length), pb, index);
+            ball_plane(rim, S::splat(simd, S::Real::from_f64(0.0)), pb)
         }
         (Geometry::Plane, _) => ball_plane(pa.position, S::splat(simd, S::Real::from_f64(0.0)), pb),
     }

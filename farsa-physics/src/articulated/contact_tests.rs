@@ -87,6 +87,10 @@ fn distance(shape: Shape, place: &Pose<f64>, p: V) -> f64 {
             let q = [0, 1, 2].map(|k: usize| p[k].abs() - half[k]);
             norm(q.map(|x| x.max(0.0))) + q[0].max(q[1]).max(q[2]).min(0.0)
         }
+        Shape::Cylinder { radius, half_length } => {
+            let q = [norm([p[0], p[1], 0.0]) - radius, p[2].abs() - half_length];
+            norm([q[0].max(0.0), q[1].max(0.0), 0.0]) + q[0].max(q[1]).min(0.0)
+        }
         Shape::Plane => p[2],
     }
 }
@@ -155,6 +159,22 @@ fn brute((sa, pa): (Shape, Pose<f64>), (sb, pb): (Shape, Pose<f64>)) -> f64 {
         (Shape::Box { half }, Shape::Plane) => {
             corners(half, &pa).into_iter().map(|c| distance(sb, &pb, c)).fold(f64::INFINITY, f64::min)
         }
+        (Shape::Cylinder { radius, half_length }, Shape::Plane) => {
+            // Both rims, point by point. The lowest one is searched between its neighbors.
+            let height = |end: f64, angle: f64| {
+                let (sine, cosine) = farsa_num::sin_cos(angle);
+                distance(sb, &pb, pa.transform([radius * cosine, radius * sine, end * half_length]))
+            };
+            let step = core::f64::consts::TAU / 64.0;
+            let mut lowest = f64::INFINITY;
+            for end in [-1.0, 1.0] {
+                for k in 0..64 {
+                    let middle = f64::from(k) * step;
+                    lowest = lowest.min(least(step, &mut |t| height(end, middle + t)));
+                }
+            }
+            lowest
+        }
         (Shape::Box { half: ha }, Shape::Box { half: hb }) => {
             let overlap = separation(ha, &pa, hb, &pb);
             if overlap <= 0.0 {
@@ -196,6 +216,9 @@ fn capsule() -> impl Strategy<Value = Shape> {
 fn block() -> impl Strategy<Value = Shape> {
     prop::array::uniform3(0.01..0.1).prop_map(|half| Shape::Box { half })
 }
+fn cylinder() -> impl Strategy<Value = Shape> {
+    (0.005..0.08, 0.005..0.08).prop_map(|(radius, half_length)| Shape::Cylinder { radius, half_length })
+}
 fn any_pair() -> impl Strategy<Value = [Shape; 2]> {
     let round = || prop_oneof![ball(), capsule()];
     let shapes = || prop_oneof![ball(), capsule(), block()];
@@ -204,14 +227,19 @@ fn any_pair() -> impl Strategy<Value = [Shape; 2]> {
         4 => (shapes(), Just(Shape::Plane)).prop_map(|(a, b)| [a, b]),
         2 => (block(), block()).prop_map(|(a, b)| [a, b]),
         2 => (shapes(), round()).prop_map(|(a, b)| [a, b]),
+        4 => (round(), cylinder()).prop_map(|(a, b)| [a, b]),
+        2 => (cylinder(), Just(Shape::Plane)).prop_map(|(a, b)| [a, b]),
+        1 => (cylinder(), round()).prop_map(|(a, b)| [a, b]),
     ]
 }
 
 /// The tolerance of the search along an axis for the deepest place, and of boxes for preferring one axis to another.
 fn slack(shapes: [Shape; 2]) -> f64 {
     match shapes {
-        [Shape::Capsule { half_length, .. }, Shape::Box { .. }]
-        | [Shape::Box { .. }, Shape::Capsule { half_length, .. }] => 1.5e-3 * half_length + 1e-9,
+        [Shape::Capsule { half_length, .. }, Shape::Box { .. } | Shape::Cylinder { .. }]
+        | [Shape::Box { .. } | Shape::Cylinder { .. }, Shape::Capsule { half_length, .. }] => {
+            1.5e-3 * half_length + 1e-9
+        }
         [Shape::Box { .. }, Shape::Box { .. }] => 3e-5,
         _ => 1e-9,
     }

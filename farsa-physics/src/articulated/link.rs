@@ -35,10 +35,16 @@ pub struct Link<R> {
     pub(crate) inertia: [R; 6],
     pub(crate) armature: R,
     pub(crate) damping: R,
+    /// The joint's spring, and the position at which it exerts no effort.
+    pub(crate) stiffness: R,
+    pub(crate) rest: R,
+    pub(crate) friction: R,
     pub(crate) lower: R,
     pub(crate) upper: R,
     pub(crate) limit_stiffness: R,
     pub(crate) limit_damping: R,
+    /// True if the description has the law of the stops. It is then a row, and the two numbers above are 0.
+    pub(crate) has_own_stop: bool,
     /// The constants of a link that only slides, for short kernels.
     pub(crate) sliding: Option<Sliding<R>>,
 }

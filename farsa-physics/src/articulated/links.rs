@@ -98,10 +98,14 @@ impl Link<f64> {
             inertia: self.inertia.map(r),
             armature: r(self.armature),
             damping: r(self.damping),
+            stiffness: r(self.stiffness),
+            rest: r(self.rest),
+            friction: r(self.friction),
             lower: r(self.lower),
             upper: r(self.upper),
             limit_stiffness: r(self.limit_stiffness),
             limit_damping: r(self.limit_damping),
+            has_own_stop: self.has_own_stop,
             sliding: None,
         }
     }
@@ -166,10 +170,14 @@ pub(crate) fn links_of(robot: &Robot) -> (Vec<Link<f64>>, Vec<Mount<f64>>) {
             inertia: [0.0; 6],
             armature: joint.armature,
             damping: joint.damping,
+            stiffness: joint.stiffness,
+            rest: joint.rest,
+            friction: joint.friction,
             lower: joint.range[0],
             upper: joint.range[1],
             limit_stiffness: 0.0,
             limit_damping: 0.0,
+            has_own_stop: joint.stop.is_some(),
             sliding: None,
         };
         link.carry(segment.mass, segment.centre, &segment.inertia, &mount);
@@ -289,6 +297,9 @@ pub(crate) fn set_limits(
         };
         if ratio < least {
             return Err(ModelError::Thin { segment: segment.name.clone(), ratio, least });
+        }
+        if link.has_own_stop {
+            continue;
         }
         link.limit_stiffness = inertia * options.limit_frequency * options.limit_frequency;
         link.limit_damping = 2.0 * options.limit_damping * inertia * options.limit_frequency;

@@ -12,6 +12,9 @@ mod collision;
 /// The contact points of each pair of colliders.
 #[cfg(feature = "alloc")]
 mod contact;
+/// Cylinders against balls, segments and planes.
+#[cfg(feature = "alloc")]
+mod cylinder;
 /// Forces from outside.
 #[cfg(feature = "alloc")]
 mod external;
@@ -24,6 +27,15 @@ mod group;
 /// Dynamics steps in halves.
 #[cfg(feature = "alloc")]
 mod halves;
+/// Impedance over the depth of a contact or stop.
+#[cfg(feature = "alloc")]
+mod impedance;
+/// Laws of joints that are rows.
+#[cfg(feature = "alloc")]
+mod joint_laws;
+/// Bounded rows of joints.
+#[cfg(feature = "alloc")]
+mod joint_row;
 /// One world of a batch behind the ports.
 #[cfg(all(feature = "lanes", not(test)))]
 mod lane;
@@ -42,9 +54,15 @@ pub(crate) mod model;
 /// Makes a model from a description.
 #[cfg(feature = "alloc")]
 mod model_builder;
+/// Friction as a pyramid.
+#[cfg(feature = "alloc")]
+mod pyramid;
 /// Ray casts.
 #[cfg(feature = "alloc")]
 pub(crate) mod ray;
+/// Restitution of contacts.
+#[cfg(feature = "alloc")]
+mod restitution;
 /// Responses of the tree to a unit force or moment at a contact.
 #[cfg(feature = "alloc")]
 mod rows;
@@ -54,6 +72,9 @@ mod sight;
 /// Spatial vectors of links that only slide.
 #[cfg_attr(not(feature = "alloc"), allow(dead_code, reason = "links are made by models, which own vectors"))]
 mod sliding;
+/// Contacts that stop motion gradually.
+#[cfg(feature = "alloc")]
+mod soft_contact;
 /// The impulses of contacts and stops, solved together.
 #[cfg(feature = "alloc")]
 mod solver;

@@ -10,6 +10,7 @@ use farsa_body::ports::BodyId;
 use farsa_body::robot::{JointKind, RobotError};
 use farsa_num::Real;
 
+use crate::articulated::impedance::Curve;
 use crate::articulated::link::{Link, WORLD};
 use crate::articulated::spatial::{Matrix, Vector};
 
@@ -35,7 +36,8 @@ pub struct Options {
     /// Tangential velocity per friction impulse at a sticking contact [m/(s N s)]. This determines how much creep is
     /// left.
     pub friction_compliance: f64,
-    /// Natural frequency of a joint stop [rad/s]. It is based on the inertia of the joint at position 0.
+    /// Natural frequency of a joint stop for which the description has no law [rad/s]. It is based on the inertia of the joint at
+    /// position 0.
     pub limit_frequency: f64,
     /// Damping ratio of a joint stop.
     pub limit_damping: f64,
@@ -146,6 +148,7 @@ pub(crate) enum Geometry<R> {
     Ball { radius: R },
     Capsule { radius: R, half_length: R },
     Block { half: Vector<R> },
+    Cylinder { radius: R, half_length: R },
     Plane,
 }
 
@@ -190,7 +193,7 @@ pub(crate) struct Ground<R> {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Pair<R> {
-    /// Colliders in the order ball, capsule, block, plane.
+    /// Colliders in the order ball, capsule, block, cylinder, plane.
     pub(crate) colliders: [usize; 2],
     /// True if that is the other way round than in the description.
     pub(crate) flipped: bool,
@@ -207,11 +210,27 @@ pub(crate) struct Pair<R> {
     pub(crate) rolling_friction: R,
     pub(crate) stiffness: R,
     pub(crate) damping: R,
+    pub(crate) soft: Option<Soft<R>>,
+    pub(crate) restitution: Option<R>,
+    /// True if friction is a pyramid.
+    pub(crate) is_pyramid: bool,
     /// True if the pair can push a joint that has a stop.
     pub(crate) at_stops: bool,
     /// The grounds below its two shapes.
     pub(crate) grounds: [Option<u16>; 2],
     pub(crate) reach: Reach,
+}
+
+/// Properties of contacts that stop motion gradually.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Soft<R> {
+    /// Inertia that a touching point adds along its normal.
+    pub(crate) inertia: R,
+    /// Damping and inertia of friction.
+    pub(crate) friction: [R; 2],
+    /// Distance at which a contact begins.
+    pub(crate) margin: R,
+    pub(crate) curve: Option<Curve<R>>,
 }
 
 /// The colliders that the pairs of a group have first, or those that they have second.
@@ -238,6 +257,26 @@ pub(crate) struct Actuator<R> {
     pub(crate) law: Law<R>,
 }
 
+/// A law of a joint that is a row of the solver.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum JointLaw<R> {
+    /// Dry friction with its largest impulse in a dynamics step.
+    Friction { link: u16, limit: R },
+    /// Largest speed.
+    Speed { link: u16, limit: R },
+    /// Soft stops.
+    Stop { link: u16, stiffness: R, damping: R, inertia: R, curve: Option<Curve<R>> },
+}
+
+impl<R> JointLaw<R> {
+    /// The link that the joint carries.
+    pub(crate) fn link(&self) -> u16 {
+        match self {
+            Self::Friction { link, .. } | Self::Speed { link, .. } | Self::Stop { link, .. } => *link,
+        }
+    }
+}
+
 /// Constant part of an articulated world. Each number of the description is rounded only once.
 #[derive(Clone, Debug)]
 pub struct Model<R> {
@@ -256,6 +295,8 @@ pub struct Model<R> {
     pub(crate) groups: Vec<Group>,
     pub(crate) clusters: Vec<Cluster<R>>,
     pub(crate) actuators: Vec<Actuator<R>>,
+    /// The words of the state with commands that have a range, and their ranges.
+    pub(crate) command_ranges: Vec<(usize, [R; 2])>,
     pub(crate) grounds: Vec<Ground<R>>,
     /// The state after [`farsa_body::ports::Arrange::clear`].
     pub(crate) initial: Vec<R>,
@@ -269,6 +310,8 @@ pub struct Model<R> {
     pub(crate) stops: Vec<bool>,
     pub(crate) stop_paths: Vec<StopPath>,
     pub(crate) stop_entries: usize,
+    /// The laws of joints that are rows, each with a word of the state.
+    pub(crate) joint_laws: Vec<JointLaw<R>>,
     pub(crate) roots: usize,
     pub(crate) gravity: [R; 3],
     /// Control step and dynamics step [s].
@@ -280,7 +323,11 @@ pub struct Model<R> {
     pub(crate) sweeps: u32,
     pub(crate) settled: R,
     pub(crate) friction_compliance: R,
+    /// Slowest approach that bounces [m/s].
+    pub(crate) bounce: R,
     pub(crate) margin: R,
+    /// The margin with that of the soft contact that begins farthest from its surfaces [m].
+    pub(crate) reach: R,
 }
 
 /// Words of the state per contact point: impulse, normal impulse, point, gap.
@@ -306,9 +353,9 @@ impl<R: Real> Model<R> {
         self.gravity
     }
     /// Length of a state. It consists of positions, velocities, two commands per actuator, eight words per contact
-    /// point and three per rolling point.
+    /// point, three per rolling point, and one per joint with dry friction, with soft stops and with a largest speed.
     pub fn state_len(&self) -> usize {
-        self.first_point() + POINT_WORDS * self.points + 3 * self.rolling
+        self.first_point() + POINT_WORDS * self.points + 3 * self.rolling + self.joint_laws.len()
     }
     /// Where the commands begin in a state.
     pub(crate) fn first_command(&self) -> usize {

@@ -3,17 +3,18 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use farsa_body::robot::{JointKind, PairFault, Robot, RobotError, Shape};
+use farsa_body::robot::{JointKind, PairFault, Robot, RobotError, Shape, Stop};
 use farsa_num::{Real, Scalar};
 
 use crate::articulated::boxes::BOX_POINTS;
 use crate::articulated::group::{groups_of, is_plane};
+use crate::articulated::impedance::Curve;
 use crate::articulated::link::{Link, Motion, WORLD};
 use crate::articulated::links::{
     IDENTITY, cast_links, cast_mount, choose_references, compose, frame, least_ratio, links_of, set_limits, unit,
 };
 use crate::articulated::model::{
-    Actuator, Collider, Geometry, Ground, Model, ModelError, Mount, Options, Pair, Reach, StopPath,
+    Actuator, Collider, Geometry, Ground, JointLaw, Model, ModelError, Mount, Options, Pair, Reach, Soft, StopPath,
 };
 
 fn check(options: &Options) -> Result<(), ModelError> {
@@ -47,7 +48,11 @@ fn geometry_of(shape: Shape) -> (Geometry<f64>, f64, u8) {
         Shape::Box { half } => {
             (Geometry::Block { half }, Scalar::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 2)
         }
-        Shape::Plane => (Geometry::Plane, 0.0, 3),
+        Shape::Cylinder { radius, half_length } => {
+            let bound = Scalar::sqrt(radius * radius + half_length * half_length);
+            (Geometry::Cylinder { radius, half_length }, bound, 3)
+        }
+        Shape::Plane => (Geometry::Plane, 0.0, 4),
     }
 }
 
@@ -56,15 +61,17 @@ fn points_of(a: &Geometry<f64>, b: &Geometry<f64>) -> Option<usize> {
     match (a, b) {
         (Geometry::Ball { .. }, _) | (Geometry::Capsule { .. }, Geometry::Capsule { .. }) => Some(1),
         (Geometry::Capsule { .. }, Geometry::Plane) => Some(2),
-        (Geometry::Capsule { .. }, Geometry::Block { .. }) => Some(3),
+        (Geometry::Capsule { .. }, Geometry::Block { .. } | Geometry::Cylinder { .. }) => Some(3),
+        (Geometry::Cylinder { .. }, Geometry::Plane) => Some(4),
         (Geometry::Block { .. }, Geometry::Plane) => Some(8),
         (Geometry::Block { .. }, Geometry::Block { .. }) => Some(BOX_POINTS),
         _ => None,
     }
 }
 
+/// Returns true for a joint with a stop of the world.
 fn has_stop(link: &Link<f64>) -> bool {
-    link.motion != Motion::Floating && (link.lower.is_finite() || link.upper.is_finite())
+    link.motion != Motion::Floating && !link.has_own_stop && (link.lower.is_finite() || link.upper.is_finite())
 }
 
 fn reach_of(links: &[Link<f64>], a: u16, b: u16) -> Reach {
@@ -113,6 +120,9 @@ fn cast_collider<R: Real>((mount, geometry, bound, _): &Fitted) -> Collider<R> {
                 Geometry::Capsule { radius: R::from_f64(radius), half_length: R::from_f64(half_length) }
             }
             Geometry::Block { half } => Geometry::Block { half: half.map(R::from_f64) },
+            Geometry::Cylinder { radius, half_length } => {
+                Geometry::Cylinder { radius: R::from_f64(radius), half_length: R::from_f64(half_length) }
+            }
             Geometry::Plane => Geometry::Plane,
         },
         bound: R::from_f64(*bound),
@@ -162,6 +172,14 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
             rolling_friction: R::from_f64(p.surface.rolling_friction),
             stiffness: R::from_f64(p.surface.stiffness),
             damping: R::from_f64(p.surface.damping),
+            soft: p.soft.map(|soft| Soft {
+                inertia: R::from_f64(soft.inertia),
+                friction: soft.friction.map(R::from_f64),
+                margin: R::from_f64(soft.margin),
+                curve: soft.impedance.as_ref().map(Curve::new),
+            }),
+            restitution: (p.restitution > 0.0).then(|| R::from_f64(p.restitution)),
+            is_pyramid: p.soft.is_some_and(|soft| soft.is_pyramid),
             grounds: [None; 2],
             at_stops: reach.first.iter().chain(&reach.second).any(|l| has_stop(&links[usize::from(*l)])),
             reach,
@@ -179,6 +197,13 @@ fn pairs_of<R: Real>(robot: &Robot, links: &[Link<f64>], colliders: &[Fitted]) -
 /// Sweeps for each one of the options in a world of stacks. Impulses pass through one box of a stack per sweep, so small
 /// changes do not show that the stack has settled.
 const STACK_SWEEPS: u32 = 4;
+
+fn length(vector: &[f64; 3]) -> f64 {
+    Scalar::sqrt(vector.iter().fold(0.0, |sum: f64, x| sum + x * x))
+}
+
+/// Dynamics steps of free fall after which an approach is fast enough to bounce.
+const FALL_STEPS: f64 = 2.0;
 
 /// Returns whether two free boxes can touch.
 fn has_stacks<R>(pairs: &[Pair<R>], links: &[Link<f64>], colliders: &[Fitted]) -> bool {
@@ -217,6 +242,25 @@ fn stop_paths_of(links: &[Link<f64>]) -> Vec<StopPath> {
         StopPath { row: row - dofs.len(), dofs }
     });
     paths.collect()
+}
+
+/// The joints with dry friction, then those with soft stops and those with a largest speed.
+fn joint_laws_of<R: Real>(robot: &Robot, mounts: &[Mount<f64>], h: f64) -> Vec<JointLaw<R>> {
+    let single = || {
+        let segments = robot.segments.iter().zip(mounts).map(|(segment, mount)| (&segment.joint, mount.link));
+        segments.filter(|(joint, _)| joint.kind.is_single())
+    };
+    let r = R::from_f64;
+    let rubbing = single().filter(|(joint, _)| joint.friction > 0.0);
+    let frictions = rubbing.map(|(joint, link)| JointLaw::Friction { link, limit: r(joint.friction * h) });
+    let stops = single().filter_map(|(joint, link)| {
+        let Stop { stiffness, damping, inertia, impedance } = joint.stop?;
+        let [stiffness, damping, inertia] = [stiffness, damping, inertia].map(r);
+        let law = JointLaw::Stop { link, stiffness, damping, inertia, curve: impedance.as_ref().map(Curve::new) };
+        joint.range.iter().any(|end| end.is_finite()).then_some(law)
+    });
+    let speeds = single().filter_map(|(joint, link)| Some(JointLaw::Speed { link, limit: r(joint.speed_limit?) }));
+    frictions.chain(stops).chain(speeds).collect()
 }
 
 /// The grounds below bodies that slide, which pairs learn that have a shape above them.
@@ -287,8 +331,12 @@ impl<R: Real> Model<R> {
         let stacks = has_stacks(&pairs, &links, &colliders);
         let sweeps = if stacks { STACK_SWEEPS * options.sweeps } else { options.sweeps };
         let settled = if stacks || !grounds.is_empty() { 0.0 } else { options.settled };
+        let widest = robot.pairs.iter().filter_map(|pair| pair.soft).map(|soft| soft.margin).fold(0.0, f64::max);
         let actuators =
             robot.actuators.iter().map(|a| Actuator { link: mounts[a.joint.index()].link, law: a.law.cast() });
+        let ranged = |(i, actuator): (usize, &farsa_body::robot::Actuator)| {
+            Some((positions + dofs + 2 * i, actuator.command_range?.map(R::from_f64)))
+        };
         let bodies_of = |pair: &farsa_body::robot::Pair| pair.colliders.map(|c| robot.colliders[c].body);
         let colors = robot.colliders.iter().enumerate();
         let shown = colors.filter_map(|(i, c)| Some((i as u16, c.color?.map(|shade| shade as f32))));
@@ -305,6 +353,7 @@ impl<R: Real> Model<R> {
             groups,
             clusters,
             actuators: actuators.collect(),
+            command_ranges: robot.actuators.iter().enumerate().filter_map(ranged).collect(),
             grounds,
             initial: Vec::new(),
             positions,
@@ -316,6 +365,7 @@ impl<R: Real> Model<R> {
             stops: links.iter().map(has_stop).collect(),
             stop_entries: stop_paths.iter().map(|p| p.dofs.len()).sum(),
             stop_paths,
+            joint_laws: joint_laws_of(robot, &mounts, h),
             roots: links.iter().filter(|l| l.motion == Motion::Floating).count(),
             gravity: options.gravity.map(R::from_f64),
             time_step: R::from_f64(options.time_step),
@@ -325,7 +375,9 @@ impl<R: Real> Model<R> {
             sweeps,
             settled: R::from_f64(settled),
             friction_compliance: R::from_f64(options.friction_compliance),
+            bounce: R::from_f64(FALL_STEPS * h * length(&options.gravity)),
             margin: R::from_f64(options.margin),
+            reach: R::from_f64(options.margin + widest),
         };
         model.initial = initial.into_iter().map(R::from_f64).collect();
         model.initial.resize(model.state_len(), R::from_f64(0.0));

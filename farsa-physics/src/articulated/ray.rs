@@ -94,6 +94,29 @@ pub(crate) fn block<R: Real>(origin: Vector<R>, direction: Vector<R>, half: Vect
     (t >= zero && leave.is_none_or(|far| t <= far)).then_some((t, normal))
 }
 
+pub(crate) fn cylinder<R: Real>(origin: Vector<R>, direction: Vector<R>, radius: R, half: R) -> Entry<R> {
+    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+    // The side as that of a capsule, then the end that the ray comes from.
+    let a = direction[0] * direction[0] + direction[1] * direction[1];
+    let b = origin[0] * direction[0] + origin[1] * direction[1];
+    let c = origin[0] * origin[0] + origin[1] * origin[1] - radius * radius;
+    let disc = b * b - a * c;
+    if a > zero && c >= zero && disc >= zero {
+        let t = (-b - disc.sqrt()) / a;
+        if t >= zero && (origin[2] + t * direction[2]).abs() <= half {
+            let p = add(origin, scale(direction, t));
+            return Some((t, [p[0] / radius, p[1] / radius, zero]));
+        }
+    }
+    if direction[2] == zero {
+        return None;
+    }
+    let side = if direction[2] > zero { -one } else { one };
+    let t = (side * half - origin[2]) / direction[2];
+    let p = add(origin, scale(direction, t));
+    (t >= zero && p[0] * p[0] + p[1] * p[1] <= radius * radius).then_some((t, [zero, zero, side]))
+}
+
 pub(crate) fn plane<R: Real>(origin: Vector<R>, direction: Vector<R>) -> Entry<R> {
     let zero = R::from_f64(0.0);
     if origin[2] < zero || direction[2] >= zero {
@@ -109,6 +132,7 @@ pub(crate) fn enter<R: Real>(geometry: &Geometry<R>, origin: Vector<R>, directio
         Geometry::Ball { radius } => ball(origin, direction, [R::from_f64(0.0); 3], radius),
         Geometry::Capsule { radius, half_length } => capsule(origin, direction, radius, half_length),
         Geometry::Block { half } => block(origin, direction, half),
+        Geometry::Cylinder { radius, half_length } => cylinder(origin, direction, radius, half_length),
         Geometry::Plane => plane(origin, direction),
     }
 }
@@ -164,6 +188,10 @@ mod tests {
                 let q = [0, 1, 2].map(|k: usize| p[k].abs() - half[k]);
                 length(q.map(|x| x.max(0.0))) + q[0].max(q[1]).max(q[2]).min(0.0)
             }
+            Geometry::Cylinder { radius, half_length } => {
+                let q = [length([p[0], p[1], 0.0]) - radius, p[2].abs() - half_length];
+                length([q[0].max(0.0), q[1].max(0.0), 0.0]) + q[0].max(q[1]).min(0.0)
+            }
             Geometry::Plane => p[2],
         }
     }
@@ -174,10 +202,11 @@ mod tests {
             Geometry::Ball { radius: 0.3 },
             Geometry::Capsule { radius: 0.2, half_length: 0.4 },
             Geometry::Block { half: [0.3, 0.2, 0.5] },
+            Geometry::Cylinder { radius: 0.3, half_length: 0.4 },
             Geometry::Plane,
         ];
         let mut stream = farsa_num::Stream::new(1, farsa_num::Domain::Start, 0, 0, 0);
-        let mut met = [0; 4];
+        let mut met = [0; 5];
         for _ in 0..2000 {
             let mut draw = || stream.range_f64(-1.0, 1.0);
             let origin = [draw(), draw(), draw()];

@@ -33,6 +33,21 @@ pub(crate) fn velocity_at<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<
     w.acceleration.at(sub(point, w.reference))
 }
 
+/// Velocity of a collider's point before the step.
+#[inline(always)]
+pub(crate) fn velocity_before<S: Scalar>(
+    simd: S::Simd,
+    link: u16,
+    work: &[LinkData<S>],
+    point: Vector<S>,
+) -> Vector<S> {
+    if link == WORLD {
+        return [S::splat(simd, S::Real::from_f64(0.0)); 3];
+    }
+    let w = &work[usize::from(link)];
+    w.velocity.at(sub(point, w.reference))
+}
+
 /// Predicted angular velocity of a link.
 #[inline(always)]
 pub(crate) fn spin<S: Scalar>(simd: S::Simd, link: u16, work: &[LinkData<S>]) -> Vector<S> {

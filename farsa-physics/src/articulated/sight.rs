@@ -75,6 +75,10 @@ pub(crate) fn query_near<R: Real>(
                 let (rotation, position) = collider_frame(world, index);
                 near_block(at, &rotation, position, half)
             }
+            Geometry::Cylinder { radius, half_length } => {
+                let (rotation, position) = collider_frame(world, index);
+                near_cylinder(at, &rotation, position, radius, half_length)
+            }
             Geometry::Plane => {
                 let (rotation, position) = collider_frame(world, index);
                 near_plane(at, &rotation, position)
@@ -163,6 +167,61 @@ fn near_capsule<R: Real>(
     let distance = (apart - cut).max(zero);
     let towards = if apart > zero { to.map(|x| x / apart) } else { [one, zero] };
     Some(([at[0] + distance * towards[0], at[1] + distance * towards[1]], distance, zero))
+}
+
+fn near_cylinder<R: Real>(
+    at: Vector<R>,
+    rotation: &Matrix<R>,
+    position: Vector<R>,
+    radius: R,
+    half_length: R,
+) -> Near<R> {
+    // The section consists of chords, one of the disc at each place t of the axis. The distance to the chord at t is a
+    // convex function of t.
+    let (zero, half) = (R::from_f64(0.0), R::from_f64(0.5));
+    let axis = [rotation[0][2], rotation[1][2], rotation[2][2]];
+    let above = at[2] - position[2];
+    let lean = length([axis[0], axis[1]]);
+    if lean < R::from_f64(1e-6) {
+        // An upright one is cut in a circle.
+        return if above.abs() > half_length { None } else { near_ball(at, [position[0], position[1], at[2]], radius) };
+    }
+    let (mut low, mut high) = (-half_length, half_length);
+    if axis[2].abs() > R::from_f64(1e-6) {
+        let [a, b] = [radius, -radius].map(|r| (above - r * lean) / axis[2]);
+        (low, high) = (low.max(a.min(b)), high.min(a.max(b)));
+    } else if above.abs() > radius * lean {
+        return None;
+    }
+    if low > high {
+        return None;
+    }
+    let across = [-axis[1] / lean, axis[0] / lean];
+    let nearest = |t: R| {
+        // The chord is this high in the disc, whose direction of steepest rise has the height `lean`.
+        let rise = (above - t * axis[2]) / lean;
+        let chord = (radius * radius - rise * rise).max(zero).sqrt();
+        let middle = [0, 1].map(|k| position[k] + t * axis[k] - rise * axis[2] * axis[k] / lean);
+        let along = (at[0] - middle[0]) * across[0] + (at[1] - middle[1]) * across[1];
+        let along = along.clamp(-chord, chord);
+        [middle[0] + along * across[0], middle[1] + along * across[1]]
+    };
+    let gap = |t: R| {
+        let point = nearest(t);
+        length([point[0] - at[0], point[1] - at[1]])
+    };
+    let step = R::from_f64(1e-3);
+    for _ in 0..HALVINGS {
+        let span = high - low;
+        let (a, b) = (low + span * (half - step), low + span * (half + step));
+        if gap(a) > gap(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    let t = (low + high) * half;
+    Some((nearest(t), gap(t), zero))
 }
 
 fn near_block<R: Real>(at: Vector<R>, rotation: &Matrix<R>, position: Vector<R>, half: Vector<R>) -> Near<R> {

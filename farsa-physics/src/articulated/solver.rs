@@ -13,6 +13,7 @@ use crate::articulated::collision::{PlacedShape, Point};
 use crate::articulated::contact::{clearance, find, halves_of_boxes, reach};
 use crate::articulated::ground::Rubbing;
 use crate::articulated::group::{Sphere, forget_group, forget_point, rolling_words, spheres_near, unknown_gap};
+use crate::articulated::joint_row::JointRow;
 use crate::articulated::link::LinkData;
 use crate::articulated::model::{Model, POINT_WORDS, Pair};
 use crate::articulated::rows::{Load, apply, spin, tangents, velocity, velocity_at, write_rows};
@@ -35,6 +36,8 @@ pub(crate) struct Block<S: Scalar> {
     /// The tangents' diagonal and the reciprocal of their determinant.
     pub(crate) stick: [S; 3],
     pub(crate) slide: S,
+    /// Compliance of friction.
+    pub(crate) slip: S,
     /// Compliance and offset of the normal law.
     pub(crate) compliance: S,
     pub(crate) offset: S,
@@ -54,24 +57,46 @@ impl<S: Scalar> Block<S> {
             inverse: [o; 3],
             stick: [o; 3],
             slide: o,
+            slip: o,
             compliance: o,
             offset: o,
             gap: o,
             point: [o; 3],
         }
     }
+
+    /// Impulses of the edges of a pyramid, and the reciprocals of their responses. They use the words of a round cone.
+    #[inline(always)]
+    pub(crate) fn edges(&self) -> ([S; 4], [S; 4]) {
+        let ([a, b, c], [d, e, f]) = (self.stick, self.inverse);
+        ([a, b, c, self.slip], [d, e, f, self.slide])
+    }
+
+    #[inline(always)]
+    pub(crate) fn set_edges(&mut self, [a, b, c, slip]: [S; 4], [d, e, f, slide]: [S; 4]) {
+        (self.stick, self.inverse, self.slip, self.slide) = ([a, b, c], [d, e, f], slip, slide);
+    }
 }
 
 /// A contact point that is near enough to be looked at.
 #[derive(Clone, Copy)]
-struct Candidate<S: Scalar> {
-    point: Point<S>,
+pub(crate) struct Candidate<S: Scalar> {
+    pub(crate) point: Point<S>,
     /// Predicted velocity of the first shape's point relative to the second's.
-    velocity: Vector<S>,
+    pub(crate) velocity: Vector<S>,
     /// In which lanes it may carry an impulse.
-    mask: S::Mask,
+    pub(crate) mask: S::Mask,
     /// The gap for the next step.
-    gap: S,
+    pub(crate) gap: S,
+}
+
+/// Law of a point with a round cone of friction.
+pub(crate) struct ConeLaw<S> {
+    pub(crate) compliance: S,
+    pub(crate) offset: S,
+    pub(crate) slip: S,
+    /// Relative velocity along the axes without contact impulses.
+    pub(crate) velocity: [S; 3],
 }
 
 /// The parts of the scratch that the contact solver uses.
@@ -95,13 +120,15 @@ pub(crate) struct Solver<'a, S: Scalar> {
     pub(crate) rolling_rows: &'a mut [[S; 3]],
     /// Response of all impulses so far, in the factor's coordinates [dofs].
     pub(crate) response: &'a mut [S],
-    /// Pair and point of the active points.
+    /// Pair and point of the active points, those with pyramids from the end.
     pub(crate) active: &'a mut [(u16, u16)],
+    pub(crate) pyramids: usize,
     pub(crate) stops: &'a mut [Stop<S>],
     pub(crate) stop_rows: &'a [S],
     /// In which lanes something touches the body on each ground.
     pub(crate) on_grounds: &'a mut [S::Mask],
     pub(crate) rubbing: &'a mut [Rubbing<S>],
+    pub(crate) joint_rows: &'a mut [JointRow<S>],
 }
 
 /// Distance between a pair's bounds, and the distance within which its surfaces are looked at [m].
@@ -119,7 +146,7 @@ fn bounds<S: Scalar>(
 }
 
 #[inline(always)]
-fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
+pub(crate) fn links_of_pair<R>(model: &Model<R>, pair: &Pair<R>) -> [u16; 2] {
     let [a, b] = pair.colliders;
     [model.colliders[a].mount.link, model.colliders[b].mount.link]
 }
@@ -229,7 +256,14 @@ impl<S: Scalar> Solver<'_, S> {
                 forget_point(words, rolling, candidate.gap);
                 continue;
             }
-            self.normal_block(simd, model, pair, index, &candidate, scale([words[0], words[1], words[2]], self.share));
+            let old = scale([words[0], words[1], words[2]], self.share);
+            match &pair.soft {
+                None => self.normal_block(simd, model, pair, index, &candidate, old),
+                Some(soft) => self.soft_block(simd, model, (pair, soft), index, &candidate, old),
+            }
+            if pair.restitution.is_some() {
+                self.bounce(simd, model, pair, index, &candidate);
+            }
             if let [x, y, z] = *rolling {
                 self.rolling_block(simd, model, pair, index, scale([x, y, z], self.share));
             }
@@ -241,8 +275,13 @@ impl<S: Scalar> Solver<'_, S> {
                 let mask = &mut self.on_grounds[usize::from(ground)];
                 *mask = *mask | candidate.mask;
             }
-            self.active[count] = (p as u16, index as u16);
-            count += 1;
+            if pair.is_pyramid {
+                self.pyramids += 1;
+                self.active[model.points - self.pyramids] = (p as u16, index as u16);
+            } else {
+                self.active[count] = (p as u16, index as u16);
+                count += 1;
+            }
         }
         count
     }
@@ -270,7 +309,12 @@ impl<S: Scalar> Solver<'_, S> {
         // the margin. A fast shape is then stopped before it is inside. A separating velocity does not count,
         // because contacts pushed by others may need the point all the same.
         let closing = dot(velocity, point.normal).min(zero);
-        let mask = near & point.valid & (point.gap + self.h * closing).lt(margin);
+        let ahead = point.gap + self.h * closing;
+        let within = match &pair.soft {
+            None => ahead.lt(margin),
+            Some(soft) => soft.counts(simd, margin, [point.gap, ahead], pair.is_pyramid),
+        };
+        let mask = near & point.valid & within;
         // The memory of a lane must not depend on its neighbors.
         let gap = S::select(near & point.valid, point.gap, far);
         Candidate { point: *point, velocity, mask, gap }
@@ -291,7 +335,7 @@ impl<S: Scalar> Solver<'_, S> {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         let one = S::splat(simd, S::Real::from_f64(1.0));
         let h = self.h;
-        let Candidate { point, velocity: v, mask, gap } = *candidate;
+        let Candidate { point, velocity: v, .. } = *candidate;
         let [t1, t2] = tangents(point.normal);
         let axes = [point.normal, t1, t2];
         let n = pair.reach.dofs.len();
@@ -307,35 +351,15 @@ impl<S: Scalar> Solver<'_, S> {
         let stiffness = h * S::splat(simd, pair.stiffness);
         let touching = point.gap.le(zero);
         let rate = S::select(touching, stiffness + S::splat(simd, pair.damping), stiffness);
-        let compliance = one / (h * rate);
-        let offset = point.gap * S::splat(simd, pair.stiffness) / rate;
-
-        // Warm start: the last step's impulse along the new axes, brought back into the friction cone |l_t| <= mu l_n.
-        let slip = S::splat(simd, model.friction_compliance);
-        let friction = S::splat(simd, pair.friction);
-        let normal = dot(old, axes[0]).max(zero);
-        let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
-        let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
-
-        // Friction is the row v_t + slip l_t = 0 inside the cone. `slip` on the diagonal makes it regular. Sticking
-        // needs the inverse of the 2 x 2 block, sliding a bound of its largest eigenvalue, max(a1, a2) + |a12|
-        // (Gershgorin).
-        let (a1, a2) = (response[1] + slip, response[2] + slip);
-        self.blocks[pair.point + index] = Block {
-            mask,
-            axes,
+        let law = ConeLaw {
+            compliance: one / (h * rate),
+            offset: point.gap * S::splat(simd, pair.stiffness) / rate,
+            slip: S::splat(simd, model.friction_compliance),
             velocity: [dot(v, axes[0]), dot(v, axes[1]), dot(v, axes[2])],
-            impulse,
-            response,
-            inverse: [one / (response[0] + compliance); 3],
-            stick: [a1, a2, one / (a1 * a2 - response[5] * response[5])],
-            slide: one / (a1.max(a2) + response[5].abs()),
-            compliance,
-            offset,
-            gap,
-            point: point.position,
         };
-        apply(&pair.reach.dofs, rows, impulse, mask, self.response);
+        let block = cone_block(simd, pair, candidate, &axes, response, &law, old);
+        self.blocks[pair.point + index] = block;
+        apply(&pair.reach.dofs, rows, block.impulse, block.mask, self.response);
     }
 
     /// Sets up the rolling rows of a point whose normal block is there: unit moments about the same axes, limited by
@@ -387,7 +411,8 @@ impl<S: Scalar> Solver<'_, S> {
     ) {
         let zero = S::splat(simd, S::Real::from_f64(0.0));
         let whole = zero.constant(1.0) / self.share;
-        for &(p, index) in &self.active[..count] {
+        let (round, pyramids) = (&self.active[..count], &self.active[model.points - self.pyramids..]);
+        for &(p, index) in round.iter().chain(pyramids) {
             let (pair, index) = (&model.pairs[usize::from(p)], usize::from(index));
             let block = &self.blocks[pair.point + index];
             let words = &mut points[POINT_WORDS * (pair.point + index)..POINT_WORDS * (pair.point + index + 1)];
@@ -410,6 +435,47 @@ impl<S: Scalar> Solver<'_, S> {
                 }
             }
         }
+    }
+}
+
+/// Returns the block of a point with a round cone of friction, with the impulse from which it starts.
+#[inline(always)]
+pub(crate) fn cone_block<S: Scalar>(
+    simd: S::Simd,
+    pair: &Pair<S::Real>,
+    candidate: &Candidate<S>,
+    axes: &[Vector<S>; 3],
+    response: [S; 6],
+    law: &ConeLaw<S>,
+    old: [S; 3],
+) -> Block<S> {
+    let zero = S::splat(simd, S::Real::from_f64(0.0));
+    let one = S::splat(simd, S::Real::from_f64(1.0));
+    let Candidate { point, mask, gap, .. } = *candidate;
+    let ConeLaw { compliance, offset, slip, velocity } = *law;
+    // Warm start: the last step's impulse along the new axes, brought back into the friction cone |l_t| <= mu l_n.
+    let friction = S::splat(simd, pair.friction);
+    let normal = dot(old, axes[0]).max(zero);
+    let across = cap([dot(old, axes[1]), dot(old, axes[2]), zero], friction * normal);
+    let impulse = select(mask, [normal, across[0], across[1]], [zero; 3]);
+
+    // Friction is the row v_t + slip l_t = 0 inside the cone. `slip` on the diagonal makes it regular. Sticking needs the
+    // inverse of the 2 x 2 block, sliding a bound of its largest eigenvalue, max(a1, a2) + |a12| (Gershgorin).
+    let (a1, a2) = (response[1] + slip, response[2] + slip);
+    Block {
+        mask,
+        axes: *axes,
+        velocity,
+        impulse,
+        response,
+        inverse: [one / (response[0] + compliance); 3],
+        slip,
+        stick: [a1, a2, one / (a1 * a2 - response[5] * response[5])],
+        slide: one / (a1.max(a2) + response[5].abs()),
+        compliance,
+        offset,
+        gap,
+        point: point.position,
     }
 }
 

@@ -3,6 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use farsa_body::actuators::clamp_command;
 use farsa_num::{Mask as _, Real, Scalar};
 
 use crate::articulated::boxes::BOX_POINTS;
@@ -12,6 +13,8 @@ use crate::articulated::external::Wrenches;
 use crate::articulated::ground::{Rubbing, hold, set_up_grounds};
 use crate::articulated::group::{Sphere, place_spheres};
 use crate::articulated::halves::{fast_lanes, remember, take_back};
+use crate::articulated::joint_laws::{JointMotion, store_joint_rows};
+use crate::articulated::joint_row::JointRow;
 use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::{Model, POINT_WORDS};
 use crate::articulated::solver::{Block, Solver};
@@ -46,6 +49,7 @@ pub struct Scratch<S: Scalar> {
     stop_rows: Vec<S>,
     on_grounds: Vec<S::Mask>,
     rubbing: Vec<Rubbing<S>>,
+    joint_rows: Vec<JointRow<S>>,
 }
 
 impl<S: Scalar> Scratch<S> {
@@ -75,6 +79,7 @@ impl<S: Scalar> Scratch<S> {
             stop_rows: vec![zero; model.stop_entries],
             on_grounds: vec![zero.lt(zero); model.grounds.len()],
             rubbing: vec![Rubbing::new(simd); model.grounds.len()],
+            joint_rows: vec![JointRow::new(simd); model.joint_laws.len()],
         }
     }
 
@@ -133,14 +138,17 @@ pub(crate) struct Parts<'a, S> {
     pub(crate) commands: &'a mut [S],
     pub(crate) points: &'a mut [S],
     pub(crate) rolling_impulses: &'a mut [S],
+    /// The impulses of joints.
+    pub(crate) joint_impulses: &'a mut [S],
 }
 
 pub(crate) fn parts<'a, R: Real, S>(model: &Model<R>, state: &'a mut [S]) -> Parts<'a, S> {
     let (q, rest) = state.split_at_mut(model.positions);
     let (v, rest) = rest.split_at_mut(model.dofs);
     let (commands, rest) = rest.split_at_mut(2 * model.actuators.len());
-    let (points, rolling_impulses) = rest.split_at_mut(POINT_WORDS * model.points);
-    Parts { q, v, commands, points, rolling_impulses }
+    let (points, rest) = rest.split_at_mut(POINT_WORDS * model.points);
+    let (rolling_impulses, joint_impulses) = rest.split_at_mut(3 * model.rolling);
+    Parts { q, v, commands, points, rolling_impulses, joint_impulses }
 }
 
 /// Advances every lane of `state` [`Model::state_len`] by one control step.
@@ -181,6 +189,9 @@ fn advance<S: Scalar>(
     mut before: impl FnMut(&mut [S], &mut Scratch<S>),
 ) {
     let one = S::splat(simd, S::Real::from_f64(1.0));
+    for &(word, range) in &model.command_ranges {
+        state[word] = clamp_command(range, state[word]);
+    }
     for _ in 0..model.substeps {
         let halved = fast_lanes(simd, model, &s.links);
         s.share = S::select(halved, one.constant(0.5), one);
@@ -241,7 +252,7 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
     }
     // Contacts use the predicted velocities at the old places. Their rows are in the factor's coordinates: M^-1 = B B^T
     // with B from the articulated bodies, so a joint's column of B begins with D^-1/2, D its articulated inertia.
-    if model.points > 0 || !model.grounds.is_empty() {
+    if model.points > 0 || !model.grounds.is_empty() || !model.joint_laws.is_empty() {
         predict(simd, model, state.v, &mut s.links);
         place_colliders(simd, model, &s.links, &mut s.placed);
         place_spheres(simd, model, &s.placed, &mut s.spheres);
@@ -273,11 +284,15 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
             stop_rows: &[],
             on_grounds: &mut s.on_grounds,
             rubbing: &mut s.rubbing,
+            joint_rows: &mut s.joint_rows,
+            pyramids: 0,
         };
         let (count, [touched, pushed]) = solver.set_up(simd, model, state.points, state.rolling_impulses);
         let isq = solver.inverse_sqrt_inertia;
         let moved = set_up_grounds(simd, model, state.v, solver.work, isq, solver.on_grounds, solver.rubbing);
-        if count > 0 || moved.any() {
+        let motion = JointMotion { q: state.q, v: state.v, qdd: &s.qdd };
+        let held = solver.set_up_joint_rows(simd, model, motion, state.joint_impulses, &mut s.stop_rows);
+        if count + solver.pyramids > 0 || moved.any() || held.any() {
             let stops = set_up_stops(
                 simd,
                 model,
@@ -287,17 +302,18 @@ fn substep<S: Scalar>(simd: S::Simd, model: &Model<S::Real>, state: &mut [S], s:
                 solver.work,
                 solver.roots,
                 solver.inverse_sqrt_inertia,
-                pushed,
+                pushed | held,
                 &mut s.stop_rows,
                 solver.stops,
             );
             solver.stop_rows = &s.stop_rows;
-            let changed = touched | moved;
+            let changed = touched | moved | held;
             solver.sweep(simd, model, count, stops, changed & s.live);
             solver.store(simd, model, count, state.points, state.rolling_impulses);
             respond(simd, model, &s.response, &s.inverse_sqrt_inertia, changed, &mut s.links, &s.roots, state.v);
             hold(simd, model, &s.rubbing, state.v);
         }
+        store_joint_rows(s.share, &s.joint_rows, state.joint_impulses);
     }
     // Semi-implicit Euler: positions move by the new velocities.
     integrate(simd, model, h, state.q, state.v, &s.links);
@@ -332,7 +348,7 @@ fn accelerate<S: Scalar>(
     );
 }
 
-/// Efforts and implicit diagonals of actuators, joint damping and stops.
+/// Efforts and implicit diagonals of actuators, joint damping, springs and stops.
 #[inline(always)]
 fn efforts<S: Scalar>(
     simd: S::Simd,
@@ -369,6 +385,12 @@ fn efforts<S: Scalar>(
         tau[at] = S::select(hard, -(stiffness * (ahead - bound)) - stop * speed, zero) - damping * speed;
         diagonal[at] =
             S::splat(simd, link.armature) + h * damping + S::select(hard, h * stop + h * h * stiffness, zero);
+        // Most joints have no spring.
+        if link.stiffness > S::Real::from_f64(0.0) {
+            let spring = S::splat(simd, link.stiffness);
+            tau[at] -= spring * (ahead - S::splat(simd, link.rest));
+            diagonal[at] += h * h * spring;
+        }
     }
     // Actuators, linearised at the start of the step: tau(q, v) and the -k h v that its stiffness adds by the end of it.
     for (actuator, command) in model.actuators.iter().zip(commands.chunks_exact(2)) {

@@ -12,6 +12,7 @@ use crate::articulated::link::{LinkData, Motion, WORLD};
 use crate::articulated::model::Model;
 use crate::articulated::rows::equal;
 use crate::articulated::spatial::Spatial;
+use crate::articulated::tree::Root;
 
 /// Joints are watched when a change of speed of this size [rad/s or m/s] would bring them to a stop within a step.
 const CHANGE: f64 = 20.0;
@@ -121,7 +122,7 @@ pub(crate) fn set_up_stops<S: Scalar>(
     q: &[S],
     v: &[S],
     work: &[LinkData<S>],
-    roots: &[crate::articulated::tree::Root<S>],
+    roots: &[Root<S>],
     inverse_sqrt_inertia: &[S],
     pushed: S::Mask,
     rows: &mut [S],
@@ -142,13 +143,12 @@ fn watch<S: Scalar>(
     q: &[S],
     v: &[S],
     work: &[LinkData<S>],
-    roots: &[crate::articulated::tree::Root<S>],
+    roots: &[Root<S>],
     inverse_sqrt_inertia: &[S],
     pushed: S::Mask,
     rows: &mut [S],
     stops: &mut [Stop<S>],
 ) -> usize {
-    let minus = -h.constant(1.0);
     let mut count = 0;
     if !pushed.any() {
         return count;
@@ -165,39 +165,54 @@ fn watch<S: Scalar>(
         if !mask.any() {
             continue;
         }
-        // The row of a unit effort at the joint: 1 / sqrt(D) for itself, and -U / D climbs on towards the root.
         let path = &model.stop_paths[i];
         let rows = &mut rows[path.row..path.row + path.dofs.len()];
-        let mut y = inverse_sqrt_inertia[usize::from(link.dof)];
-        rows[0] = y;
-        let mut response = y * y;
-        let mut p: Spatial<S> = work[i].column.scale(minus * work[i].reciprocal);
-        let mut at = 1;
-        let mut next = link.parent;
-        while next != WORLD {
-            let l = &model.links[usize::from(next)];
-            if l.motion == Motion::Floating {
-                let half = roots[usize::from(l.root)].factor.half(p);
-                for y in &half {
-                    rows[at] = *y;
-                    response += *y * *y;
-                    at += 1;
-                }
-            } else {
-                let w = &work[usize::from(next)];
-                let s = w.subspace.dot(p);
-                y = s * inverse_sqrt_inertia[usize::from(l.dof)];
-                rows[at] = y;
-                response += y * y;
-                at += 1;
-                p = p - w.column.scale(s * w.reciprocal);
-            }
-            next = l.parent;
-        }
+        let response = write_joint_row(model, i, work, roots, inverse_sqrt_inertia, rows);
         stops[count] = Stop::from_row(model, i, mask, h, [x, speed], rows.len(), response);
         count += 1;
     }
     count
+}
+
+/// Writes the row of a unit effort at the joint of a link, and returns its response.
+#[inline(always)]
+pub(crate) fn write_joint_row<S: Scalar>(
+    model: &Model<S::Real>,
+    link: usize,
+    work: &[LinkData<S>],
+    roots: &[Root<S>],
+    inverse_sqrt_inertia: &[S],
+    rows: &mut [S],
+) -> S {
+    // 1 / sqrt(D) for the joint itself, and -U / D climbs on towards the root.
+    let mut y = inverse_sqrt_inertia[usize::from(model.links[link].dof)];
+    let minus = -y.constant(1.0);
+    rows[0] = y;
+    let mut response = y * y;
+    let mut p: Spatial<S> = work[link].column.scale(minus * work[link].reciprocal);
+    let mut at = 1;
+    let mut next = model.links[link].parent;
+    while next != WORLD {
+        let l = &model.links[usize::from(next)];
+        if l.motion == Motion::Floating {
+            let half = roots[usize::from(l.root)].factor.half(p);
+            for y in &half {
+                rows[at] = *y;
+                response += *y * *y;
+                at += 1;
+            }
+        } else {
+            let w = &work[usize::from(next)];
+            let s = w.subspace.dot(p);
+            y = s * inverse_sqrt_inertia[usize::from(l.dof)];
+            rows[at] = y;
+            response += y * y;
+            at += 1;
+            p = p - w.column.scale(s * w.reciprocal);
+        }
+        next = l.parent;
+    }
+    response
 }
 
 /// Brings one stop's impulse to its law in the lanes of `running`, given all others. `length` is that of the response or

@@ -1,16 +1,17 @@
-//! The sweeps of projected Gauss-Seidel over the rows of contacts, stops and grounds.
+//! The sweeps of projected Gauss-Seidel over the rows of contacts, joints, stops and grounds.
 
 use farsa_num::{Mask, Real, Scalar};
 
 use crate::articulated::ground::relax_ground;
-use crate::articulated::model::Model;
+use crate::articulated::model::{Model, Pair};
+use crate::articulated::pyramid::relax_edges;
 use crate::articulated::rows::{apply, velocity};
 use crate::articulated::solver::{Solver, cap};
 use crate::articulated::spatial::{dot, select, sub};
 use crate::articulated::stop::{length_of, relax_stop};
 
 impl<S: Scalar> Solver<'_, S> {
-    /// Sweeps over the active points, forwards and backwards in turn, and over the stops, in the lanes of `running`.
+    /// Sweeps over the active points, forwards and backwards in turn, and over the joints, in the lanes of `running`.
     #[inline(never)]
     pub(crate) fn sweep(
         &mut self,
@@ -39,6 +40,14 @@ impl<S: Scalar> Solver<'_, S> {
                 let (p, index) = self.active[if round % 2 == 0 { k } else { count - 1 - k }];
                 change = change.max(self.relax(simd, model, running, usize::from(p), usize::from(index)));
             }
+            for k in 0..self.pyramids {
+                let back = if round % 2 == 0 { k } else { self.pyramids - 1 - k };
+                let (p, index) = self.active[model.points - 1 - back];
+                change = change.max(self.relax_pyramid(simd, model, running, usize::from(p), usize::from(index)));
+            }
+            for (law, row) in model.joint_laws.iter().zip(&mut *self.joint_rows) {
+                change = change.max(row.relax(simd, model, law, running, self.stop_rows, self.response));
+            }
             if stops > 0 {
                 let mut length = length_of(simd, self.response);
                 for stop in &mut self.stops[..stops] {
@@ -66,7 +75,6 @@ impl<S: Scalar> Solver<'_, S> {
         let dofs = &pair.reach.dofs;
         let n = dofs.len();
         let zero = S::splat(simd, S::Real::from_f64(0.0));
-        let slip = S::splat(simd, model.friction_compliance);
         let block = &mut self.blocks[pair.point + index];
         let mask = block.mask & running;
         if !mask.any() {
@@ -84,6 +92,7 @@ impl<S: Scalar> Solver<'_, S> {
         // Sticking solves both tangents at once. Sliding steps against the velocity, alike in all directions, and is
         // projected onto the cone of the new normal impulse.
         let limit = S::splat(simd, pair.friction) * normal;
+        let slip = block.slip;
         let (w1, w2) = (v[1] + slip * old[1], v[2] + slip * old[2]);
         let stick = [
             old[1] - (block.stick[1] * w1 - a12 * w2) * block.stick[2],
@@ -98,23 +107,75 @@ impl<S: Scalar> Solver<'_, S> {
         let difference = sub(new, old);
         apply(dofs, rows, difference, mask, self.response);
         let along = |k: usize, response: S| difference[k].abs() * response;
-        let mut moved = along(0, a00).max(along(1, a11)).max(along(2, a22));
-        // Rolling rows: each axis by its own diagonal, then the whole moment projected onto its limit.
-        if let Some(first) = pair.rolling {
-            let limit = S::splat(simd, pair.rolling_friction) * new[0];
-            let block = &mut self.rolling[first + index];
-            let rows = &self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
-            let v = velocity(dofs, rows, block.velocity, self.response);
-            let old = block.impulse;
-            let change = [v[0] * block.inverse[0], v[1] * block.inverse[1], v[2] * block.inverse[2]];
-            let new = select(mask, cap(sub(old, change), limit), old);
-            block.impulse = new;
-            let difference = sub(new, old);
-            apply(dofs, rows, difference, mask, self.response);
-            let turned = |k: usize| difference[k].abs() * block.response[k];
-            let bound = S::splat(simd, model.colliders[pair.colliders[0]].bound);
-            moved = moved.max(turned(0).max(turned(1)).max(turned(2)) * bound);
+        let moved = along(0, a00).max(along(1, a11)).max(along(2, a22));
+        match pair.rolling {
+            Some(first) => moved.max(self.relax_rolling(simd, model, pair, first, index, mask)),
+            None => moved,
         }
-        moved
+    }
+
+    /// The same for a point with a pyramid of friction.
+    #[inline(never)]
+    fn relax_pyramid(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        running: S::Mask,
+        pair: usize,
+        index: usize,
+    ) -> S {
+        S::vectorize(
+            simd,
+            #[inline(always)]
+            || {
+                let pair = &model.pairs[pair];
+                let dofs = &pair.reach.dofs;
+                let n = dofs.len();
+                let block = &mut self.blocks[pair.point + index];
+                let mask = block.mask & running;
+                if !mask.any() {
+                    return S::splat(simd, S::Real::from_f64(0.0));
+                }
+                let rows = &self.rows[pair.row + index * n..pair.row + (index + 1) * n];
+                let v = velocity(dofs, rows, block.velocity, self.response);
+                let change = relax_edges(block, S::splat(simd, pair.friction), v, mask);
+                apply(dofs, rows, change, mask, self.response);
+                let along = |k: usize| change[k].abs() * block.response[k];
+                let moved = along(0).max(along(1)).max(along(2));
+                match pair.rolling {
+                    Some(first) => moved.max(self.relax_rolling(simd, model, pair, first, index, mask)),
+                    None => moved,
+                }
+            },
+        )
+    }
+
+    /// Brings the rolling impulse of a point to its law: each axis by its own diagonal, then the whole moment projected onto
+    /// its limit. Returns by how much it changes the velocities there [m/s].
+    #[inline(always)]
+    fn relax_rolling(
+        &mut self,
+        simd: S::Simd,
+        model: &Model<S::Real>,
+        pair: &Pair<S::Real>,
+        first: usize,
+        index: usize,
+        mask: S::Mask,
+    ) -> S {
+        let dofs = &pair.reach.dofs;
+        let n = dofs.len();
+        let limit = S::splat(simd, pair.rolling_friction) * self.blocks[pair.point + index].impulse[0];
+        let block = &mut self.rolling[first + index];
+        let rows = &self.rolling_rows[pair.rolling_row + index * n..pair.rolling_row + (index + 1) * n];
+        let v = velocity(dofs, rows, block.velocity, self.response);
+        let old = block.impulse;
+        let change = [v[0] * block.inverse[0], v[1] * block.inverse[1], v[2] * block.inverse[2]];
+        let new = select(mask, cap(sub(old, change), limit), old);
+        block.impulse = new;
+        let difference = sub(new, old);
+        apply(dofs, rows, difference, mask, self.response);
+        let turned = |k: usize| difference[k].abs() * block.response[k];
+        let bound = S::splat(simd, model.colliders[pair.colliders[0]].bound);
+        turned(0).max(turned(1)).max(turned(2)) * bound
     }
 }

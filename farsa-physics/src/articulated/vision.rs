@@ -69,6 +69,7 @@ impl<R: Real> Around<R> {
         let radius = match *geometry {
             Geometry::Ball { radius } => radius,
             Geometry::Capsule { radius, half_length } => radius + half_length,
+            Geometry::Cylinder { radius, half_length } => (radius * radius + half_length * half_length).sqrt(),
             Geometry::Block { half } => dot(half, half).sqrt(),
             Geometry::Plane => return None,
         };

@@ -10,6 +10,7 @@ use farsa_body::{Pose, Twist};
 use farsa_num::Real;
 
 use crate::articulated::external::Wrenches;
+use crate::articulated::link::Motion;
 use crate::articulated::model::{Model, Pair};
 use crate::articulated::ray;
 use crate::articulated::sight;
@@ -75,13 +76,19 @@ impl<R: Precision> World<R> {
         self.state[..self.model.positions + self.model.dofs].iter().all(|x| x.to_f64().is_finite())
     }
 
-    /// Computes the kinetic and the potential energy [J]. This includes armatures, but not contacts and actuators.
+    /// Computes the kinetic and the potential energy [J]. This includes armatures and the springs of joints, but not
+    /// contacts and actuators.
     pub fn energy(&mut self) -> [f64; 2] {
         let v = &self.state[self.model.positions..];
         let work = &mut self.scratch.links;
         let kinetic = kinetic_energy((), &self.model.links, v, work);
-        let potential = potential_energy((), &self.model.links, self.model.gravity, work);
-        [kinetic.to_f64(), potential.to_f64()]
+        let weight = potential_energy((), &self.model.links, self.model.gravity, work);
+        let joints = self.model.links.iter().filter(|link| link.motion != Motion::Floating);
+        let stretched = joints.map(|link| {
+            let stretch = (self.state[usize::from(link.q)] - link.rest).to_f64();
+            0.5 * link.stiffness.to_f64() * stretch * stretch
+        });
+        [kinetic.to_f64(), weight.to_f64() + stretched.sum::<f64>()]
     }
 
     /// Computes the linear momentum of all moving bodies [N s]. Armatures are not included.

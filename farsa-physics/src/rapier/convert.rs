@@ -17,8 +17,12 @@ pub(crate) fn pose(mount: &Mount<f64>) -> Frame {
     Frame::from_parts(vector(mount.position), Rotation::from_array(q).normalize())
 }
 
-pub(crate) fn shape_of(shape: &Shape) -> SharedShape {
-    match *shape {
+/// A shape and its frame in that of the description's.
+pub(crate) fn shape_of(shape: &Shape) -> (SharedShape, Frame) {
+    let shape = match *shape {
+        Shape::Cylinder { radius, half_length } => {
+            return (SharedShape::cylinder(half_length as f32, radius as f32), upright());
+        }
         Shape::Sphere { radius } => SharedShape::ball(radius as f32),
         Shape::Capsule { radius, half_length } => SharedShape::capsule_z(half_length as f32, radius as f32),
         Shape::Box { half } => {
@@ -26,5 +30,12 @@ pub(crate) fn shape_of(shape: &Shape) -> SharedShape {
             SharedShape::cuboid(x, y, z)
         }
         Shape::Plane => SharedShape::halfspace(Vector::Z),
-    }
+    };
+    (shape, Frame::IDENTITY)
+}
+
+/// The frame of rapier's cylinders and height fields, which are upright along y.
+pub(crate) fn upright() -> Frame {
+    let quarter = core::f32::consts::FRAC_1_SQRT_2;
+    Frame::from_rotation(Rotation::from_xyzw(quarter, 0.0, 0.0, quarter))
 }

@@ -37,6 +37,8 @@ pub(crate) struct Carrier {
     pub(crate) axis: usize,
     /// Damping of the joint itself [N m s/rad or N s/m].
     pub(crate) damping: f32,
+    /// Stiffness of the joint's own spring [N m/rad or N/m], and the position at which it exerts no effort.
+    pub(crate) spring: [f32; 2],
     /// Mean inertia of the body alone [kg m2].
     pub(crate) inertia: f32,
 }
@@ -67,6 +69,14 @@ pub(crate) struct Drive {
     pub(crate) count: usize,
 }
 
+/// An actuator with its number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motor {
+    pub(crate) law: Law<f32>,
+    pub(crate) command_range: Option<[f32; 2]>,
+    pub(crate) actuator: usize,
+}
+
 /// The constant part of a world of rapier.
 #[derive(Clone, Debug)]
 pub(crate) struct RobotPlan {
@@ -79,9 +89,11 @@ pub(crate) struct RobotPlan {
     pub(crate) pairs: Vec<Touching>,
     pub(crate) rules: Rules,
     pub(crate) drives: Vec<Drive>,
-    /// The laws of the drives' actuators, drive by drive, with the numbers of the actuators.
-    pub(crate) laws: Vec<(Law<f32>, usize)>,
+    /// The actuators of the drives, drive by drive.
+    pub(crate) motors: Vec<Motor>,
     pub(crate) actuators: usize,
+    /// The largest speeds of joints, with the numbers of their carriers.
+    pub(crate) speed_limits: Vec<(usize, f32)>,
     pub(crate) time_step: f32,
     pub(crate) substeps: u32,
 }
@@ -155,8 +167,9 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
             let why = format!("collider {}: a plane does not move", collider.name);
             return Err(RapierError::Unsupported { why });
         }
-        let built = ColliderBuilder::new(shape_of(&collider.shape))
-            .position(pose(&mount))
+        let (shape, local) = shape_of(&collider.shape);
+        let built = ColliderBuilder::new(shape)
+            .position(pose(&mount) * local)
             .density(0.0)
             .user_data(Rules::mark(number))
             .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS | ActiveHooks::MODIFY_SOLVER_CONTACTS);
@@ -184,7 +197,8 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
             (Some(a), Some(b)) => farsa_num::Scalar::sqrt(a * b),
             (a, b) => a.or(b).unwrap_or(0.0),
         };
-        (*sides, surface(number).map_or_else(between, |surface| surface.friction))
+        let restitution = robot.pairs.get(number).map_or(0.0, |pair| pair.restitution);
+        (*sides, [surface(number).map_or_else(between, |surface| surface.friction), restitution])
     });
     let rules: Vec<_> = rules.collect();
     let pairs = sides.iter().enumerate().map(|(number, sides)| Touching {
@@ -194,7 +208,7 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
         rolling_friction: surface(number).map_or(0.0, |surface| surface.rolling_friction as f32),
         of_links: sides.iter().any(|c| on[*c].is_some_and(|c| carriers[c].link.is_some())),
     });
-    let (drives, laws) = drives_of(robot, &mounts);
+    let (drives, motors) = drives_of(robot, &mounts);
     let plan = RobotPlan {
         pairs: pairs.collect(),
         kinds,
@@ -204,8 +218,9 @@ pub(crate) fn build(scene: &Scene, options: &Options) -> Result<(RobotPlan, Phys
         carriers,
         frames,
         drives,
-        laws,
+        motors,
         actuators: robot.actuators.len(),
+        speed_limits: speed_limits_of(robot, &mounts),
         time_step: options.time_step as f32,
         substeps: options.substeps,
     };
@@ -236,7 +251,7 @@ fn add_object(
     };
     let body = physics.insert_body(RigidBodyBuilder::dynamic().can_sleep(false).pose(at));
     let collider = physics.insert_collider(built.position(local).mass(mass as f32), Some(body));
-    Ok((Some(Carrier { body, link: None, axis: 0, damping: 0.0, inertia: 0.0 }), collider))
+    Ok((Some(Carrier { body, link: None, axis: 0, damping: 0.0, spring: [0.0; 2], inertia: 0.0 }), collider))
 }
 
 /// Refuses joints that move no mass and have no armature.
@@ -300,6 +315,7 @@ fn add_links(physics: &mut PhysicsWorld, links: &[Link<f64>], shifts: &[[f64; 3]
             if link.motion != Motion::Floating {
                 multibody.armature_mut()[dof] = link.armature as f32;
                 multibody.damping_mut()[dof] = link.damping as f32;
+                multibody.frictions_mut()[dof] = link.friction as f32;
                 let start = 0.0_f64.max(link.lower).min(link.upper) as f32;
                 multibody.link_mut(found.id)?.joint.apply_displacement(&[start]);
             }
@@ -310,22 +326,34 @@ fn add_links(physics: &mut PhysicsWorld, links: &[Link<f64>], shifts: &[[f64; 3]
             link: place,
             axis: if link.motion == Motion::Prismatic { 2 } else { 5 },
             damping: link.damping as f32,
+            spring: [link.stiffness as f32, link.rest as f32],
             inertia: ((link.inertia[0] + link.inertia[1] + link.inertia[2]) / 3.0) as f32,
         });
     }
     carriers
 }
 
-/// The joints that have actuators, with the laws of these.
-fn drives_of(robot: &Robot, mounts: &[Mount<f64>]) -> (Vec<Drive>, Vec<(Law<f32>, usize)>) {
-    let (mut drives, mut laws) = (Vec::new(), Vec::new());
+/// The largest speeds of joints, with the numbers of their carriers.
+fn speed_limits_of(robot: &Robot, mounts: &[Mount<f64>]) -> Vec<(usize, f32)> {
+    let joints = robot.segments.iter().zip(mounts).filter(|(segment, _)| segment.joint.kind.is_single());
+    joints.filter_map(|(segment, mount)| Some((usize::from(mount.link), segment.joint.speed_limit? as f32))).collect()
+}
+
+/// The joints that have actuators or springs, with these actuators.
+fn drives_of(robot: &Robot, mounts: &[Mount<f64>]) -> (Vec<Drive>, Vec<Motor>) {
+    let (mut drives, mut motors) = (Vec::new(), Vec::new());
     for (segment, mount) in mounts.iter().enumerate() {
-        let first = laws.len();
+        let first = motors.len();
         let actuators = robot.actuators.iter().enumerate().filter(|(_, a)| a.joint.index() == segment);
-        laws.extend(actuators.map(|(number, actuator)| (actuator.law.cast(), number)));
-        if laws.len() > first {
-            drives.push(Drive { carrier: usize::from(mount.link), first, count: laws.len() - first });
+        motors.extend(actuators.map(|(number, actuator)| Motor {
+            law: actuator.law.cast(),
+            command_range: actuator.command_range.map(|range| range.map(|end| end as f32)),
+            actuator: number,
+        }));
+        let joint = &robot.segments[segment].joint;
+        if motors.len() > first || (joint.kind.is_single() && joint.stiffness > 0.0) {
+            drives.push(Drive { carrier: usize::from(mount.link), first, count: motors.len() - first });
         }
     }
-    (drives, laws)
+    (drives, motors)
 }

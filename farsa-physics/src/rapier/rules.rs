@@ -18,18 +18,18 @@ pub(crate) struct Rules {
     width: usize,
     /// The number of the pair of two colliders [width * width].
     pairs: Vec<u16>,
-    /// Coefficient of friction of each pair.
-    friction: Vec<f32>,
+    /// Coefficients of friction and restitution of each pair.
+    surfaces: Vec<[f32; 2]>,
 }
 
 impl Rules {
-    pub(crate) fn new(width: usize, pairs: &[([usize; 2], f64)]) -> Self {
+    pub(crate) fn new(width: usize, pairs: &[([usize; 2], [f64; 2])]) -> Self {
         let mut table = vec![NONE; width * width];
         for (number, &([a, b], _)) in pairs.iter().enumerate() {
             table[a * width + b] = number as u16;
             table[b * width + a] = number as u16;
         }
-        Self { width, pairs: table, friction: pairs.iter().map(|(_, friction)| *friction as f32).collect() }
+        Self { width, pairs: table, surfaces: pairs.iter().map(|(_, surface)| surface.map(|x| x as f32)).collect() }
     }
 
     /// Returns the mark of a collider with this number.
@@ -63,7 +63,7 @@ impl PhysicsHooks for Rules {
         if let Ok(Some(pair)) = pair
             && let Some(manifold) = context.rigid_mut()
         {
-            *manifold.friction = self.friction[pair];
+            [*manifold.friction, *manifold.restitution] = self.surfaces[pair];
         }
     }
 }

@@ -8,10 +8,10 @@ use farsa_body::Pose;
 use farsa_body::ports::{BodyId, PairId};
 use farsa_body::robot::{Robot, RobotError, Shape};
 use rapier3d::geometry::{SharedShape, TriMeshFlags};
-use rapier3d::math::{Pose as Frame, Rotation, Vector};
+use rapier3d::math::{Pose as Frame, Vector};
 use rapier3d::parry::utils::Array2;
 
-use crate::rapier::convert::shape_of;
+use crate::rapier::convert::{shape_of, upright};
 use crate::rapier::error::RapierError;
 
 /// The geometry of an object, in its own frame.
@@ -205,7 +205,7 @@ impl SceneObject {
             }
             Geometry::Simple(Shape::Box { half }) => half.iter().try_for_each(|x| positive("half edge", *x)),
             Geometry::Simple(Shape::Plane) => still("plane"),
-            Geometry::Cylinder { radius, half_length } => {
+            Geometry::Simple(Shape::Cylinder { radius, half_length }) | Geometry::Cylinder { radius, half_length } => {
                 positive("radius", *radius)?;
                 positive("half length", *half_length)
             }
@@ -244,13 +244,10 @@ impl SceneObject {
     /// The geometry as rapier has it, and its frame in the object's.
     pub(crate) fn shape(&self) -> Result<(SharedShape, Frame), RapierError> {
         let unusable = |why: String| self.fault(why);
-        let quarter = core::f32::consts::FRAC_1_SQRT_2;
-        // rapier's cylinders and height fields are upright along y.
-        let upright = Frame::from_rotation(Rotation::from_xyzw(quarter, 0.0, 0.0, quarter));
         Ok(match &self.geometry {
-            Geometry::Simple(shape) => (shape_of(shape), Frame::IDENTITY),
+            Geometry::Simple(shape) => shape_of(shape),
             Geometry::Cylinder { radius, half_length } => {
-                (SharedShape::cylinder(*half_length as f32, *radius as f32), upright)
+                (SharedShape::cylinder(*half_length as f32, *radius as f32), upright())
             }
             Geometry::Hull(points) => {
                 let points: Vec<Vector> = points.iter().map(|point| Vector::from(*point)).collect();
@@ -271,7 +268,7 @@ impl SceneObject {
                 let at = |row: usize, column: usize| heights[(rows - 1 - row) * columns + column];
                 let data = (0..*columns).flat_map(|column| (0..*rows).map(move |row| at(row, column))).collect();
                 let grid = Array2::new(*rows, *columns, data);
-                (SharedShape::heightfield(grid, Vector::new(*x as f32, 1.0, *y as f32)), upright)
+                (SharedShape::heightfield(grid, Vector::new(*x as f32, 1.0, *y as f32)), upright())
             }
         })
     }

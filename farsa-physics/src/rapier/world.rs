@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
+use farsa_body::actuators::clamp_command;
 use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robot::{JointKind, Robot};
 use farsa_body::{Pose, Twist};
@@ -13,7 +14,7 @@ use rapier3d::pipeline::PhysicsWorld;
 
 use crate::rapier::contact::roll;
 use crate::rapier::error::RapierError;
-use crate::rapier::model::{Carrier, RobotPlan, build};
+use crate::rapier::model::{Carrier, Motor, RobotPlan, build};
 use crate::rapier::options::Options;
 use crate::rapier::pushes::Pushes;
 use crate::rapier::scene::Scene;
@@ -150,7 +151,8 @@ impl World {
         Twist { linear: (centre + angular.cross(arm)).into(), angular: angular.into() }
     }
 
-    /// Evaluates the actuators' laws and passes the results to rapier: torque and stiffness as a spring, and damping.
+    /// Evaluates the actuators' laws and passes the results, and springs of joints, to rapier: torque and stiffness as
+    /// a spring, and damping.
     ///
     /// rapier adds `-k (q - rest) - k h v - d v`. The torque at this instant is all in `rest`.
     fn actuate(&mut self) {
@@ -161,9 +163,12 @@ impl World {
             let speed = multibody.generalized_velocity()[dof];
             let Some(found) = multibody.link_mut(link) else { continue };
             let position = found.joint.coords()[carrier.axis];
-            let (mut torque, mut stiffness, mut damping) = (0.0, 0.0, 0.0);
-            for (law, actuator) in &self.plan.laws[drive.first..drive.first + drive.count] {
-                let effort = law.effort(position, speed, self.commands[*actuator]);
+            let [mut stiffness, rest] = carrier.spring;
+            let (mut torque, mut damping) = (-stiffness * (position - rest), 0.0);
+            for Motor { law, command_range, actuator } in &self.plan.motors[drive.first..drive.first + drive.count] {
+                let [first, second] = self.commands[*actuator];
+                let command = [command_range.map_or(first, |range| clamp_command(range, first)), second];
+                let effort = law.effort(position, speed, command);
                 torque += effort.torque;
                 stiffness += effort.stiffness;
                 damping += effort.damping;
@@ -189,9 +194,21 @@ impl World {
             }
             roll(&mut self.physics, &self.plan);
             self.physics.step_with_events(&self.plan.rules, &());
+            self.limit_speeds();
             self.examine();
         }
         self.pushes.end(&mut self.physics);
+    }
+
+    /// Clamps the joints to their largest speeds. rapier has no such constraint.
+    fn limit_speeds(&mut self) {
+        for &(carrier, limit) in &self.plan.speed_limits {
+            let Some((multibody, _, dof)) = self.plan.carriers[carrier].link else { continue };
+            if let Some(multibody) = self.physics.multibody_joints.get_multibody_mut_internal(multibody) {
+                let speed = &mut multibody.generalized_velocity_mut()[dof];
+                *speed = speed.clamp(-limit, limit);
+            }
+        }
     }
 
     /// Lets a force act on a body in the next control step.

@@ -8,6 +8,7 @@ use farsa_physics::articulated::{
     potential_energy,
 };
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 #[derive(Deserialize)]
 struct Body {
@@ -45,7 +46,7 @@ struct Matrices {
 }
 
 #[derive(Deserialize)]
-struct Fixture {
+pub(crate) struct Fixture {
     gravity: [f64; 3],
     bodies: Vec<Body>,
     states: Vec<State>,
@@ -53,10 +54,13 @@ struct Fixture {
     tip_body: u16,
 }
 
-fn load(name: &str) -> (Fixture, Model<f64>) {
+pub(crate) fn read<T: DeserializeOwned>(name: &str) -> T {
     let path = format!("{}/tests/fixtures/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap();
-    let fixture: Fixture = serde_json::from_str(&text).unwrap();
+    serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap()
+}
+
+/// The robot of a fixture, and its gravity.
+pub(crate) fn robot(name: &str, fixture: &Fixture) -> (Robot, [f64; 3]) {
     let segments = fixture
         .bodies
         .iter()
@@ -71,18 +75,22 @@ fn load(name: &str) -> (Fixture, Model<f64>) {
                     _ => JointKind::Fixed,
                 },
                 axis: b.axis,
-                placement: Pose { position: b.position, rotation: unit(b.rotation) },
                 range: [f64::NEG_INFINITY, f64::INFINITY],
                 armature: b.armature,
-                damping: 0.0,
+                ..Joint::fixed(Pose { position: b.position, rotation: unit(b.rotation) })
             },
             mass: b.mass,
             centre: b.centre,
             inertia: b.inertia,
         })
         .collect();
-    let robot = Robot { name: name.into(), segments, ..Robot::default() };
-    let model = Model::new(&robot, &Options { gravity: fixture.gravity, ..Options::default() }).unwrap();
+    (Robot { name: name.into(), segments, ..Robot::default() }, fixture.gravity)
+}
+
+fn load(name: &str) -> (Fixture, Model<f64>) {
+    let fixture: Fixture = read(name);
+    let (robot, gravity) = robot(name, &fixture);
+    let model = Model::new(&robot, &Options { gravity, ..Options::default() }).unwrap();
     (fixture, model)
 }
 
@@ -92,7 +100,7 @@ fn unit(q: [f64; 4]) -> [f64; 4] {
 }
 
 /// max |a - b| / max |b|
-fn difference(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let top = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     a.iter().zip(b).fold(0.0_f64, |m, (x, y)| m.max((x - y).abs())) / top

@@ -15,6 +15,7 @@ mod ground;
 mod halves;
 mod honest;
 mod icub;
+mod joint_laws;
 mod oracle;
 mod sight;
 #[path = "../sliding/mod.rs"]

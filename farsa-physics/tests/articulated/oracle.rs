@@ -47,8 +47,10 @@ fn dense(robot: &Robot, model: &Model<f64>, options: &Options, state: &[f64], st
     for (i, segment) in robot.segments.iter().enumerate() {
         let Some((iq, iv)) = model.joint_index(JointId(i as u16)) else { continue };
         let (q, v) = (state[iq], state[nq + iv]);
-        let (mut torque, mut damping, mut stiffness) = (-segment.joint.damping * v, segment.joint.damping, 0.0);
-        let [low, high] = segment.joint.range;
+        let joint = &segment.joint;
+        let (mut damping, mut stiffness) = (joint.damping, joint.stiffness);
+        let mut torque = -damping * v - stiffness * (q - joint.rest);
+        let [low, high] = joint.range;
         let ahead = q + h * v;
         if ahead > high || ahead < low {
             let k = stop[iv];
@@ -78,7 +80,10 @@ fn top(x: &DVector<f64>) -> f64 {
 
 #[test]
 fn without_contacts_the_step_is_the_dense_implicit_step() {
-    let robot = ghost(&scene());
+    let mut robot = ghost(&scene());
+    for segment in robot.segments.iter_mut().take(12) {
+        segment.joint = segment.joint.clone().with_spring(0.7, -0.2);
+    }
     let groups = ArmAndHand::default().servo_groups();
     let (mut worst, mut stops, mut saturated) = (0.0_f64, 0, 0);
     for h in [5e-3, 2.5e-3, 1e-3, 1e-4] {
@@ -151,7 +156,8 @@ fn order(shape: Shape) -> u8 {
         Shape::Sphere { .. } => 0,
         Shape::Capsule { .. } => 1,
         Shape::Box { .. } => 2,
-        Shape::Plane => 3,
+        Shape::Cylinder { .. } => 3,
+        Shape::Plane => 4,
     }
 }
 

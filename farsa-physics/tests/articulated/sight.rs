@@ -40,6 +40,10 @@ impl Placed {
                 let q = [x.abs() - half[0], y.abs() - half[1], z.abs() - half[2]];
                 length(q.map(|x| x.max(0.0))) + q[0].max(q[1]).max(q[2]).min(0.0)
             }
+            Shape::Cylinder { radius, half_length } => {
+                let q = [length([x, y, 0.0]) - radius, z.abs() - half_length];
+                length([q[0].max(0.0), q[1].max(0.0), 0.0]) + q[0].max(q[1]).min(0.0)
+            }
             Shape::Plane => z,
         }
     }
@@ -64,9 +68,10 @@ pub(crate) fn scene(stream: &mut Stream) -> (Robot, Vec<Placed>) {
     let count = 2 + stream.below(5);
     for i in 0..count {
         let mut size = || stream.range_f64(0.05, 0.3);
-        let shape = match i % 4 {
+        let shape = match i % 5 {
             0 | 3 => Shape::Sphere { radius: size() },
             1 => Shape::Capsule { radius: size(), half_length: size() },
+            4 => Shape::Cylinder { radius: size(), half_length: size() },
             _ => Shape::Box { half: [size(), size(), size()] },
         };
         let position = [stream.range_f64(-1.5, 1.5), stream.range_f64(-1.5, 1.5), stream.range_f64(-0.2, 0.4)];

@@ -1,7 +1,7 @@
 //! A ball on a plane and on a table against closed forms.
 
 use farsa_body::ports::{Arrange, BodyId, Contacts, Kinematics, PairId, World as _};
-use farsa_body::robot::{Collider, Joint, JointKind, Pair, Robot, Segment, Shape, Surface};
+use farsa_body::robot::{Collider, Joint, Pair, Robot, Segment, Shape, Surface};
 use farsa_body::robots::Tabletop;
 use farsa_body::{Pose, Twist};
 use farsa_num::sin_cos;
@@ -25,15 +25,7 @@ fn ball_on(shape: Shape, placement: Pose<f64>, surface: Surface) -> Robot {
         segments: vec![Segment {
             name: "ball".into(),
             parent: None,
-            joint: Joint {
-                name: String::new(),
-                kind: JointKind::Floating,
-                axis: [0.0, 0.0, 1.0],
-                placement: Pose::at([0.0, 0.0, RADIUS]),
-                range: [f64::NEG_INFINITY, f64::INFINITY],
-                armature: 0.0,
-                damping: 0.0,
-            },
+            joint: Joint::floating(Pose::at([0.0, 0.0, RADIUS])),
             mass: MASS,
             centre: [0.0; 3],
             inertia: [i, i, i, 0.0, 0.0, 0.0],
@@ -48,7 +40,7 @@ fn ball_on(shape: Shape, placement: Pose<f64>, surface: Surface) -> Robot {
             },
             Collider::new("ground", None, shape, placement),
         ],
-        pairs: vec![Pair { colliders: [0, 1], surface, group: None }],
+        pairs: vec![Pair { colliders: [0, 1], surface, group: None, soft: None, restitution: 0.0 }],
         actuators: vec![],
         ..Robot::default()
     }

@@ -126,15 +126,16 @@ impl Babble {
 
 /// Contact points of a pair, as the model numbers them.
 pub(crate) fn points_of(robot: &Robot, pair: usize) -> usize {
-    use Shape::{Box, Capsule, Plane, Sphere};
+    use Shape::{Box, Capsule, Cylinder, Plane, Sphere};
     let [a, b] = robot.pairs[pair].colliders.map(|c| robot.colliders[c].shape);
     match (a, b) {
         (Sphere { .. }, _) | (_, Sphere { .. }) | (Capsule { .. }, Capsule { .. }) => 1,
         (Capsule { .. }, Plane) | (Plane, Capsule { .. }) => 2,
-        (Capsule { .. }, Box { .. }) | (Box { .. }, Capsule { .. }) => 3,
+        (Capsule { .. }, Box { .. } | Cylinder { .. }) | (Box { .. } | Cylinder { .. }, Capsule { .. }) => 3,
         (Box { .. }, Plane) | (Plane, Box { .. }) => 8,
         (Box { .. }, Box { .. }) => 13,
-        (Plane, Plane) => 0,
+        (Cylinder { .. }, Plane) | (Plane, Cylinder { .. }) => 4,
+        (Cylinder { .. }, _) | (_, Cylinder { .. }) | (Plane, Plane) => 0,
     }
 }
 
@@ -143,6 +144,7 @@ pub(crate) fn half_thickness(shape: Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
         Shape::Box { half } => half[0].min(half[1]).min(half[2]),
+        Shape::Cylinder { radius, half_length } => radius.min(half_length),
         Shape::Plane => f64::INFINITY,
     }
 }

@@ -424,3 +424,37 @@ fn a_pinch_holds_the_sphere() {
     println!("carried with {up} N");
     assert!((up - (MASS * 9.81) as f32).abs() < 0.05, "{up} N");
 }
+
+/// Joints without actuators that have springs, dampers and dry friction: they swing and come to rest as ours do.
+#[test]
+fn springs_and_dry_friction_of_joints_are_as_ours() {
+    for (name, [stiffness, damping, friction], tolerance) in
+        [("spring", [4.0, 0.2, 0.0], 3e-3), ("dry friction", [0.0, 0.0, 0.3], 3e-3), ("both", [4.0, 0.0, 0.3], 3e-3)]
+    {
+        let mut robot = Robot::new("chain");
+        let mut parent = None;
+        for i in 0..3_u16 {
+            let at = Pose::at([0.0, 0.0, if i == 0 { 1.0 } else { -0.3 }]);
+            let joint = Joint::revolute(&format!("J{i}"), [0.0, 1.0, 0.0], at, [-10.0, 10.0]);
+            let joint = joint.with_spring(stiffness, 0.3).with_damping(damping).with_friction(friction);
+            let rod = MassProperties::capsule(0.5, 0.02, 0.15).placed(&Pose::at([0.0, 0.0, -0.15]));
+            parent = Some(robot.add_segment(Segment::new(&format!("rod{i}"), parent, joint, rod)));
+        }
+        let fine = articulated::Options { substeps: 100, sweeps: 100, ..articulated::Options::default() };
+        let mut ours = articulated::World::<f64>::new(articulated::Model::new(&robot, &fine).unwrap());
+        let mut theirs = World::new(&robot, &Options { substeps: 100, ..Options::default() }).unwrap();
+        ours.place_joint(JointId(0), 1.0, 0.0);
+        theirs.place_joint(JointId(0), 1.0, 0.0);
+        ours.finish_placement();
+        theirs.finish_placement();
+        let mut most = 0.0_f32;
+        for _ in 0..100 {
+            ours.step();
+            theirs.step();
+            let differences = (0..3).map(JointId).map(|j| (ours.position(j) - theirs.position(j)).abs());
+            most = differences.fold(most, f32::max);
+        }
+        println!("{name}: {most:.1e} rad");
+        assert!(most < tolerance, "{name}: {most} rad");
+    }
+}

@@ -4,7 +4,8 @@ use alloc::format;
 use alloc::vec::Vec;
 
 use crate::ports::BodyId;
-use crate::robot::description::{Collider, JointKind, Robot, Surface};
+use crate::robot::description::{Collider, Robot, Surface};
+use crate::robot::joint::JointKind;
 use crate::robots::hand::Hand;
 use crate::robots::icub::chain::Side;
 use crate::robots::mirror;

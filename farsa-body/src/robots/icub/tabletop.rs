@@ -2,7 +2,8 @@
 
 use crate::ports::BodyId;
 use crate::pose::Pose;
-use crate::robot::description::{Collider, Joint, Robot, Segment, Surface};
+use crate::robot::description::{Collider, Robot, Segment, Surface};
+use crate::robot::joint::Joint;
 use crate::robot::mass_properties::MassProperties;
 use crate::robot::shape::Shape;
 use crate::robots::icub::chain::Side;
