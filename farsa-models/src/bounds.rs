@@ -15,6 +15,7 @@ pub(crate) fn has_size(shape: &Shape) -> bool {
     match *shape {
         Shape::Sphere { radius } => positive(radius),
         Shape::Capsule { radius, half_length } => positive(radius) && (0.0..MAX_SIZE).contains(&half_length),
+        Shape::Cylinder { radius, half_length } => positive(radius) && positive(half_length),
         Shape::Box { half } => half.into_iter().all(positive),
         Shape::Plane => true,
     }
@@ -27,7 +28,7 @@ pub(crate) fn check_sizes(robot: &Robot) -> Result<(), RobotError> {
     let Some((name, shape)) = colliders.chain(visuals).find(|(_, shape)| !has_size(shape)) else { return Ok(()) };
     let value = match shape {
         Shape::Sphere { radius } => radius,
-        Shape::Capsule { radius, half_length } => radius.max(half_length),
+        Shape::Capsule { radius, half_length } | Shape::Cylinder { radius, half_length } => radius.max(half_length),
         Shape::Box { half } => half.into_iter().fold(0.0, f64::max),
         Shape::Plane => 0.0,
     };

@@ -27,7 +27,7 @@ pub(crate) struct ModelFiles {
     packages: Vec<PathBuf>,
     most_bytes: usize,
     most_files: usize,
-    opened: usize,
+    opened: Vec<PathBuf>,
     most_read: usize,
     read: usize,
 }
@@ -52,7 +52,7 @@ impl ModelFiles {
             packages: options.packages.iter().map(|path| real(path)).collect::<Result<_, _>>()?,
             most_bytes: options.limits.bytes,
             most_files: options.limits.files,
-            opened: 0,
+            opened: Vec::new(),
             most_read: options.limits.all_bytes,
             read: 0,
         })
@@ -91,9 +91,14 @@ impl ModelFiles {
         below.unwrap_or(path).display().to_string()
     }
 
+    /// Lists the files that were opened, in their order.
+    pub(crate) fn opened(self) -> Vec<PathBuf> {
+        self.opened
+    }
+
     fn bytes(&mut self, path: &Path, place: &SourceLocation) -> Result<Vec<u8>, ReadError> {
-        self.opened += 1;
-        if self.opened > self.most_files {
+        self.opened.push(path.into());
+        if self.opened.len() > self.most_files {
             return Err(ReadError::TooMuch { place: place.clone(), what: "files", limit: self.most_files });
         }
         let mut bytes = Vec::new();

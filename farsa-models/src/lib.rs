@@ -37,5 +37,5 @@ pub use error::{ReadError, SourceLocation};
 pub use frame::Frame;
 pub use imported::Imported;
 pub use options::{Limits, Meshes, ReadOptions, Repair};
-pub use self_contained::self_contained;
+pub use self_contained::{SelfContained, self_contained};
 pub use warnings::Warning;

@@ -94,6 +94,12 @@ pub struct ReadOptions {
     /// Lets the root of a URDF move freely instead of fixing it in the world. This has no effect on a root with the name
     /// `world`, which always is the world.
     pub floating: bool,
+    /// Reads `velocity` of the limits of a URDF as the largest speeds of its joints. This is off by default, because many
+    /// files have numbers that their authors never tested. 0 and numbers from 1000 are no limits.
+    pub joint_speeds: bool,
+    /// Reads cylinders as such. By default they become capsules, because cylinders can touch spheres, capsules and planes
+    /// only.
+    pub cylinders: bool,
     /// Treatment of meshes.
     pub meshes: Meshes,
     /// Treatment of impossible masses.
@@ -111,6 +117,8 @@ impl Default for ReadOptions {
             root: None,
             packages: Vec::new(),
             floating: false,
+            joint_speeds: false,
+            cylinders: false,
             meshes: Meshes::Fit,
             repair: Repair::default(),
             between: 1e-3,

@@ -1,6 +1,6 @@
 //! A model as one text that names no other file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::context::Context;
 use crate::error::ReadError;
@@ -12,6 +12,15 @@ use crate::warnings::Warnings;
 use crate::xml::merge::{Changes, merged};
 use crate::xml::tree::Tree;
 
+/// A model as a text that names no other file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SelfContained {
+    /// The text.
+    pub text: String,
+    /// Files that were read for it, starting with that of the model. A change of one of them may change the text.
+    pub files: Vec<PathBuf>,
+}
+
 /// Reads a URDF or MJCF and returns it as a text that [`Imported::from_text`](crate::Imported::from_text) reads without
 /// any file.
 ///
@@ -21,7 +30,7 @@ use crate::xml::tree::Tree;
 ///
 /// # Errors
 /// Returns the fault and its line, see [`ReadError`].
-pub fn self_contained(path: &Path, options: &ReadOptions) -> Result<String, ReadError> {
+pub fn self_contained(path: &Path, options: &ReadOptions) -> Result<SelfContained, ReadError> {
     let mut files = ModelFiles::new(path.parent(), options)?;
     let text = files.model(path)?;
     let mut context = Context { files, options, warnings: Warnings::default(), elements: 0 };
@@ -32,9 +41,10 @@ pub fn self_contained(path: &Path, options: &ReadOptions) -> Result<String, Read
         "mujoco" => mjcf::without_meshes(root, &mut context)?,
         _ => return Err(root.unknown("root of a model", root.tag(), ["robot", "mujoco"])),
     };
-    Ok(match changes {
+    let text = match changes {
         Some(changes) => merged(root, &changes),
         None if tree.has_includes() => merged(root, &Changes::default()),
         None => text,
-    })
+    };
+    Ok(SelfContained { text, files: context.files.opened() })
 }

@@ -118,7 +118,7 @@ fn places(name: &str, model: &Value, reading: &Imported, worst: &mut f64) -> usi
 /// The text without files has the same robot, to rounding.
 fn without_files(path: &Path, options: &ReadOptions, robot: &Robot) {
     let name = path.display();
-    let text = self_contained(path, options).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let text = self_contained(path, options).unwrap_or_else(|error| panic!("{name}: {error}")).text;
     let alone = ReadOptions { packages: Vec::new(), meshes: Meshes::Leave, ..options.clone() };
     let again = Imported::from_text(&text, &alone).unwrap_or_else(|error| panic!("{name}: {error}")).robot;
     assert_eq!(again.colliders.len(), robot.colliders.len(), "{name}");

@@ -20,7 +20,7 @@ fn options_name_only_what_differs() {
 #[test]
 fn what_was_read_reads_back_as_it_was() {
     let text = r#"<mujoco model="rod"><worldbody><body name="rod" pos="0 0 1">
-        <joint name="hinge" axis="0 1 0" range="-90 90" stiffness="1"/>
+        <joint name="hinge" axis="0 1 0" range="-90 90" springyield="1"/>
         <geom type="capsule" fromto="0 0 0 0 0 -0.5" size="0.01"/></body></worldbody></mujoco>"#;
     let imported = Imported::from_text(text, &ReadOptions::default()).unwrap();
     assert_eq!(imported.warnings.len(), 1);

@@ -33,6 +33,8 @@ class Reading:
     joints: dict = field(default_factory=dict)
     free: dict = field(default_factory=dict)
     ranges: dict = field(default_factory=dict)
+    # Stiffness and rest position of each spring, and dry friction, where the program has them.
+    laws: dict = field(default_factory=dict)
     contacts: bool = True
     states: list = field(default_factory=list)
 
@@ -53,6 +55,7 @@ def from_mujoco(path, random):
     flags = mujoco.mjtDisableBit
     reading.contacts = not model.opt.disableflags & (flags.mjDSBL_CONTACT | flags.mjDSBL_CONSTRAINT)
     limits = not model.opt.disableflags & (flags.mjDSBL_LIMIT | flags.mjDSBL_CONSTRAINT)
+    disabled = int(model.opt.disableflags)
     # Constraints change neither the mass matrix nor the bias, but take time.
     model.opt.disableflags |= flags.mjDSBL_CONSTRAINT | flags.mjDSBL_CONTACT
     bodies = [model.body(b).name or f"body{b}" for b in range(model.nbody)]
@@ -68,6 +71,11 @@ def from_mujoco(path, random):
             limited = model.jnt_limited[j] and limits
             reading.ranges[name] = tuple(model.jnt_range[j]) if limited else (-math.inf, math.inf)
             addresses[name] = int(model.jnt_qposadr[j])
+            springs = not model.opt.disableflags & flags.mjDSBL_SPRING
+            friction = not disabled & (flags.mjDSBL_FRICTIONLOSS | flags.mjDSBL_CONSTRAINT)
+            stiffness = float(model.jnt_stiffness[j]) * bool(springs)
+            rest = float(model.qpos_spring[addresses[name]]) if stiffness else 0.0
+            reading.laws[name] = (stiffness, rest, float(model.dof_frictionloss[first]) * bool(friction))
     for _ in range(STATES):
         mujoco.mj_resetData(model, data)
         positions = {name: between(ends, random) for name, ends in reading.ranges.items()}

@@ -89,6 +89,11 @@ class Description:
             ours = limits(self.segments[self.joints[name][0]]["joint"])
             if not all(a == b or abs(a - b) <= TOLERANCE * max(1.0, abs(a)) for a, b in zip(ends, ours)):
                 yield f"range of {name}: {ends}, ours {ours}"
+        for name, laws in reading.laws.items():
+            joint = self.segments[self.joints[name][0]]["joint"]
+            ours = [joint.get(law, 0.0) for law in ("stiffness", "rest", "friction")]
+            if not np.allclose(laws, ours, rtol=TOLERANCE, atol=1e-12):
+                yield f"stiffness, rest and friction of {name}: {laws}, ours {ours}"
         for state in reading.states:
             yield from self.different_state(reading, state, frames, free)
 

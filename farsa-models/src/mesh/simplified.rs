@@ -261,11 +261,11 @@ mod tests {
         }
 
         #[test]
-        fn closed_surfaces_keep_their_bounds(half in prop::array::uniform3(0.05..2.0_f64), cells in 2_usize..20) {
+        fn closed_surfaces_keep_their_bounds(half in prop::array::uniform3(0.5..2.0_f64), cells in 10_usize..20) {
+            // No half is shorter than a cell. The triangles of a thin body would vanish over several cells of its length.
             let mesh = ellipsoid(half, 24).welded();
             let clustered = mesh.clustered(cells);
             let (_, size) = mesh.grid(cells);
-            prop_assume!(!clustered.points.is_empty());
             for k in 0..3 {
                 let end = |mesh: &Mesh| mesh.points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
                 // Cells whose triangles all vanish have no point.

@@ -6,6 +6,7 @@ use farsa_body::robot::{MassProperties, Shape};
 use crate::bounds::{MAX_SIZE, has_size};
 use crate::mesh::mass::MeshInertia;
 use crate::mesh::triangles::{Mesh, z_to_axis};
+use crate::options::ReadOptions;
 
 /// Shape that replaces a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,10 +46,13 @@ pub(crate) enum Solid {
 
 impl Solid {
     /// Our shape for it, its place in the solid's frame, and what became of it unless it is the same.
-    pub(crate) fn shape(&self) -> (Shape, Pose<f64>, Option<&'static str>) {
+    pub(crate) fn shape(&self, options: &ReadOptions) -> (Shape, Pose<f64>, Option<&'static str>) {
         let here = Pose::identity();
         match self {
             Self::Native(shape) => (*shape, here, None),
+            Self::Cylinder { radius, half_length } if options.cylinders => {
+                (Shape::Cylinder { radius: *radius, half_length: *half_length }, here, None)
+            }
             Self::Cylinder { radius, half_length } if half_length > radius => {
                 let shape = Shape::Capsule { radius: *radius, half_length: half_length - radius };
                 (shape, here, Some("a cylinder became the capsule of its radius and length"))
@@ -84,7 +88,9 @@ impl Solid {
             }
             Self::Native(Shape::Box { half }) => 8.0 * half[0] * half[1] * half[2],
             Self::Native(Shape::Plane) => 0.0,
-            Self::Cylinder { radius, half_length } => 2.0 * pi * radius * radius * half_length,
+            Self::Native(Shape::Cylinder { radius, half_length }) | Self::Cylinder { radius, half_length } => {
+                2.0 * pi * radius * radius * half_length
+            }
             Self::Ellipsoid([a, b, c]) => 4.0 / 3.0 * pi * a * b * c,
             Self::Mesh(mesh) => mesh.mass.map_or_else(|_| Self::Native(mesh.shape).volume(), |solid| solid.mass),
         }
@@ -112,7 +118,7 @@ impl Solid {
             Self::Native(Shape::Capsule { .. }) => "capsule",
             Self::Native(Shape::Box { .. }) => "box",
             Self::Native(Shape::Plane) => "plane",
-            Self::Cylinder { .. } => "cylinder",
+            Self::Native(Shape::Cylinder { .. }) | Self::Cylinder { .. } => "cylinder",
             Self::Ellipsoid(_) => "ellipsoid",
             Self::Mesh(_) => "mesh",
         };

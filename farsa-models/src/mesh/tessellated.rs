@@ -17,7 +17,9 @@ impl Solid {
             Self::Native(Shape::Sphere { radius }) => around(&arc(radius, 0.0)),
             Self::Native(Shape::Capsule { radius, half_length }) => around(&arc(radius, half_length)),
             Self::Native(Shape::Box { half }) => cuboid(half),
-            Self::Cylinder { radius, half_length: z } => around(&[[0.0, -z], [radius, -z], [radius, z], [0.0, z]]),
+            Self::Native(Shape::Cylinder { radius, half_length: z }) | Self::Cylinder { radius, half_length: z } => {
+                around(&[[0.0, -z], [radius, -z], [radius, z], [0.0, z]])
+            }
             Self::Ellipsoid(axes) => around(&arc(1.0, 0.0)).map(|point| [0, 1, 2].map(|k| point[k] * axes[k])),
             Self::Native(Shape::Plane) | Self::Mesh(_) => Mesh::default(),
         }

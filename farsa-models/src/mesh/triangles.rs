@@ -361,7 +361,7 @@ mod tests {
                     Shape::Sphere { radius } => norm(&[x, y, z]) - radius,
                     Shape::Capsule { radius, half_length } => norm(&[x, y, (z.abs() - half_length).max(0.0)]) - radius,
                     Shape::Box { half } => (x.abs() - half[0]).max(y.abs() - half[1]).max(z.abs() - half[2]),
-                    Shape::Plane => unreachable!(),
+                    Shape::Cylinder { .. } | Shape::Plane => unreachable!(),
                 };
                 prop_assert!(out < 1e-9, "{shape:?} {out}");
             }

@@ -4,6 +4,7 @@ use farsa_body::actuators::{Held, Law, Servo, Torque, Velocity};
 use farsa_body::ports::JointId;
 use farsa_body::robot::Robot;
 
+use crate::bounds::{effort_from_file, joined, range_from_file};
 use crate::context::Context;
 use crate::error::ReadError;
 use crate::mjcf::bodies::Bodies;
@@ -13,6 +14,9 @@ use crate::mjcf::gains::{ClassGains, Gains};
 use crate::mjcf::names::Names;
 use crate::warnings::Warnings;
 use crate::xml::tree::Element;
+
+/// A law and the range of its commands.
+type Commanded = (Law<f64>, Option<[f64; 2]>);
 
 /// Kinds of actuators that can be described.
 const KINDS: [&str; 4] = ["general", "motor", "position", "velocity"];
@@ -46,7 +50,11 @@ pub(crate) fn actuators<'t>(
             let classed = classes.with(element, classes.main())?;
             let law = match joint_of(&classed, bodies)? {
                 Err(why) => Err(why),
-                Ok(id) => law(&classed, gains.of(&classed)?, compiler, &mut context.warnings)?.map(|law| (id, law)),
+                Ok(id) => {
+                    let joint_range = robot.segments[id.index()].joint.range;
+                    let law = law(&classed, gains.of(&classed)?, joint_range, compiler, &mut context.warnings)?;
+                    law.map(|law| (id, law))
+                }
             };
             match law {
                 Ok(_) if !acts(&classed, compiler)? => {
@@ -54,10 +62,11 @@ pub(crate) fn actuators<'t>(
                     context.warnings.add(element.place(), format!("actuator {}", element.tag()), why);
                     element.leave();
                 }
-                Ok((id, law)) => {
+                Ok((id, (law, command_range))) => {
                     let name = element.attribute("name").filter(|name| !name.is_empty()).map(String::from);
                     let name = name.unwrap_or_else(|| names.generate("actuator", format!("actuator{index}")));
-                    robot.add_actuator(&name, id, law);
+                    let added = robot.add_actuator(&name, id, law);
+                    robot.actuators[added.index()].command_range = command_range;
                 }
                 Err(why) => {
                     context.warnings.add(element.place(), format!("actuator {}", element.tag()), why);
@@ -133,13 +142,14 @@ fn check(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError>
         "biasprm",
         "dyntype",
         "timeconst",
+        "inheritrange",
         "group",
     ];
     // Attributes of some kinds only. MuJoCo checks that other kinds do not have them.
     let ignored = [
         ("tendon site refsite slidersite cranksite cranklength body", "actuators act on joints"),
         ("user", "only for show"),
-        ("lengthrange inheritrange range velrange posrange", "the range of commands is the caller's"),
+        ("lengthrange range velrange posrange", "the range of commands is `ctrlrange`"),
         ("actlimited actrange actdim actearly dynprm delay nsample interp input", "actuators have no states"),
         ("armature damping", "of the joint alone"),
         (
@@ -151,13 +161,14 @@ fn check(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError>
     element.check(&read, &ignored, warnings)
 }
 
-/// Returns the law of an actuator, or the reason why a description has none.
+/// Returns the law of an actuator and the range of its commands, or the reason why a description has none.
 fn law(
     classed: &Classed<'_, '_>,
     gains: Gains,
+    joint_range: [f64; 2],
     compiler: &Compiler,
     warnings: &mut Warnings,
-) -> Result<Result<Law<f64>, &'static str>, ReadError> {
+) -> Result<Result<Commanded, &'static str>, ReadError> {
     const NONE: &str = "left out: a description has no such law";
     let element = classed.element;
     let mut note = |attribute: &str, why: &str| {
@@ -185,27 +196,59 @@ fn law(
     let automatic = compiler.automatic_limits;
     let force = classed.largest("forcelimited", "forcerange", automatic, warnings)?;
     let limit = force.map_or(f64::INFINITY, |force| force * gear.abs());
-    let control = classed.largest("ctrllimited", "ctrlrange", automatic, warnings)?;
+    let control = control_range(classed, joint_range, automatic, warnings)?;
     let control = control.filter(|_| compiler.flags.clamp_control);
-    let (law, ignored, why) = if stiffness == 0.0 && damping == 0.0 {
-        // A factor of 0 is no force, whatever the command.
-        let control = if gain == 0.0 { 0.0 } else { control.map_or(f64::INFINITY, |control| control * gain.abs()) };
-        (Law::Torque(Torque { limit: limit.min(control) }), None, "")
-    } else {
-        let range = control.map(|_| "`ctrlrange`");
-        let why = "the range of commands is the caller's";
-        if stiffness > 0.0 {
-            (Law::Servo(Servo { stiffness, damping, limit }), range, why)
-        } else if of_speed {
-            (Law::Velocity(Velocity { gain: damping, limit }), range, why)
-        } else if limit.is_finite() {
-            (Law::Held(Held { stiffness, damping }), Some("`forcerange`"), "a damped motor has no largest effort")
-        } else {
-            (Law::Held(Held { stiffness, damping }), range, why)
-        }
+    // A command is the control times the factor between the control and the torque, per unit of the law.
+    let commands = |unit: f64| {
+        let [a, b] = control?.map(|end| end * gain / unit);
+        (gain != 0.0).then(|| [a.min(b), a.max(b)])
     };
-    if let Some(attribute) = ignored {
-        warnings.add(element.place(), format!("actuator {} {attribute}", element.tag()), why);
-    }
+    let law = if stiffness == 0.0 && damping == 0.0 {
+        // A factor of 0 is no force, whatever the command.
+        let largest = commands(1.0).map_or(f64::INFINITY, |[low, high]| effort_from_file(low.abs().max(high.abs())));
+        let limit = limit.min(if gain == 0.0 { 0.0 } else { largest });
+        (Law::Torque(Torque { limit }), commands(1.0).filter(|[low, high]| *low != -high))
+    } else if stiffness > 0.0 {
+        (Law::Servo(Servo { stiffness, damping, limit }), commands(stiffness))
+    } else if of_speed {
+        (Law::Velocity(Velocity { gain: damping, limit }), commands(damping))
+    } else {
+        if limit.is_finite() {
+            let what = format!("actuator {} `forcerange`", element.tag());
+            warnings.add(element.place(), what, "a damped motor has no largest effort");
+        }
+        (Law::Held(Held { stiffness, damping }), commands(1.0))
+    };
     Ok(Ok(law))
+}
+
+/// Returns the range of an actuator's control, if it is limited.
+///
+/// MuJoCo 4.0: a positive `inheritrange` of a servo makes it the range of the joint, scaled about its middle.
+fn control_range(
+    classed: &Classed<'_, '_>,
+    joint_range: [f64; 2],
+    automatic: bool,
+    warnings: &mut Warnings,
+) -> Result<Option<[f64; 2]>, ReadError> {
+    let element = classed.element;
+    let inherited = if element.tag() == "position" { classed.number("inheritrange")? } else { None };
+    let Some(scale) = inherited.filter(|scale| *scale > 0.0) else {
+        let ends = classed.limits("ctrllimited", "ctrlrange", automatic, warnings)?;
+        return Ok(ends.map(|ends| range_from_file(joined(ends))));
+    };
+    if element.has("ctrlrange") {
+        let text = element.attribute("ctrlrange").unwrap_or_default();
+        return Err(element.wrong("ctrlrange", text, "but there is `inheritrange` already"));
+    }
+    if classed.word("ctrllimited", &["true", "false", "auto"])? == Some("false") {
+        return Ok(None);
+    }
+    let [low, high] = joint_range;
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * scale);
+    if !half.is_finite() {
+        warnings.add(element.place(), "actuator position `inheritrange`", "the joint has no range");
+        return Ok(None);
+    }
+    Ok(Some([middle - half, middle + half]))
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use farsa_body::Pose;
 use farsa_body::ports::{BodyId, JointId};
-use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, Segment, Visual};
+use farsa_body::robot::{Collider, Joint, JointKind, MassProperties, Robot, RobotError, Segment, Visual};
 
 use crate::context::Context;
 use crate::drawn::DrawnMesh;
@@ -16,8 +16,10 @@ use crate::mjcf::compiler::{Compiler, ROTATIONS};
 use crate::mjcf::drawn::{MeshGeom, drawn};
 use crate::mjcf::geoms::{CONDITIONAL, MeshAssets, check_geom, geom};
 use crate::mjcf::inertials::{body_mass, bounded};
+use crate::mjcf::inverse_weight::inverse_weights;
 use crate::mjcf::items::{Item, items};
 use crate::mjcf::joints::{BodyJoint, check_joint, joint};
+use crate::mjcf::limits::Limits;
 use crate::mjcf::names::Names;
 use crate::mjcf::reasons::SHOW;
 use crate::repair::CHANGED;
@@ -54,6 +56,10 @@ pub(crate) struct Bodies<'t, 'c> {
     chains: Vec<Vec<(BodyId, [f64; 3])>>,
     /// Largest efforts of joints.
     pub(crate) efforts: Vec<(JointId, f64, SourceLocation)>,
+    /// Joints whose position in the configuration of the file is not 0.
+    pub(crate) references: Vec<(BodyId, f64)>,
+    /// Numbers of the limits of joints.
+    limits: Vec<(BodyId, Limits)>,
     pub(crate) geoms: Vec<Geom<'t, 'c>>,
     /// Geoms of meshes that may be drawn.
     mesh_geoms: Vec<MeshGeom<'t>>,
@@ -111,6 +117,8 @@ impl<'t, 'c> Bodies<'t, 'c> {
             joints: BTreeMap::new(),
             chains: Vec::new(),
             efforts: Vec::new(),
+            references: Vec::new(),
+            limits: Vec::new(),
             geoms: Vec::new(),
             mesh_geoms: Vec::new(),
             paired,
@@ -239,7 +247,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
         let (count, share) = (joints.len(), context.options.between);
         // The body's frame in that of the last segment. Before the first joint it is the body's place.
         let (mut last, mut frame, mut chain) = (carrying, placement, Vec::with_capacity(count));
-        for (i, BodyJoint { joint, anchor, effort }) in joints.into_iter().enumerate() {
+        for (i, BodyJoint { joint, anchor, reference, effort, limits }) in joints.into_iter().enumerate() {
             // A segment's frame is at its joint: the anchor is the origin, and the body's frame is off by minus the anchor.
             let at_anchor = frame.compose(&Pose::at(anchor));
             let joint = Joint { placement: at_anchor.compose(&joint.placement), ..joint };
@@ -257,6 +265,8 @@ impl<'t, 'c> Bodies<'t, 'c> {
             if let Some(joint) = single {
                 self.joints.insert(joint, JointId(id.0));
                 self.efforts.extend(effort.map(|(largest, place)| (JointId(id.0), largest, place)));
+                self.limits.extend(limits.map(|limits| (id, limits)));
+                self.references.extend((reference != 0.0).then_some((id, reference)));
             }
             locations.push(element.place());
             chain.push((id, anchor));
@@ -271,6 +281,18 @@ impl<'t, 'c> Bodies<'t, 'c> {
             self.chains.push(chain);
         }
         (last, frame)
+    }
+
+    /// Gives joints with limits the stops that their inverse weights make of MuJoCo's numbers.
+    pub(crate) fn set_stops(&self, robot: &mut Robot) -> Result<(), RobotError> {
+        if self.limits.is_empty() {
+            return Ok(());
+        }
+        let weights = inverse_weights(robot)?.joints;
+        for (id, limits) in &self.limits {
+            robot.segments[id.index()].joint.stop = Some(limits.stop(weights[id.index()]));
+        }
+        Ok(())
     }
 
     /// Gives segments between the joints of a body their share of the mass that the body took over from others.
@@ -376,7 +398,7 @@ impl<'t, 'c> Bodies<'t, 'c> {
                 element.leave();
                 continue;
             };
-            let (shape, inner, why) = solid.shape();
+            let (shape, inner, why) = solid.shape(context.options);
             if let Some(why) = why {
                 context.warnings.add(element.place(), format!("geom {}", solid.label()), why);
             }

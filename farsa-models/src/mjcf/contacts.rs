@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use farsa_body::robot::{Robot, Shape, Surface};
+use farsa_body::robot::{Robot, Shape, SoftContact, Surface};
 
 use crate::context::Context;
 use crate::error::ReadError;
@@ -223,7 +223,7 @@ fn add_pairs(
     flags: &Flags,
     warnings: &mut Warnings,
 ) -> Result<(), ReadError> {
-    let weights = inverse_weights(robot).map_err(|error| ReadError::Robot { file: model.place().file, error })?;
+    let weights = inverse_weights(robot).map_err(|error| ReadError::Robot { file: model.place().file, error })?.bodies;
     let mut surfaces: BTreeMap<[usize; 2], usize> = BTreeMap::new();
     for (colliders, mut contact) in pairs {
         let w: f64 = colliders
@@ -236,13 +236,20 @@ fn add_pairs(
         if contact.dimensions == 4.0 {
             warnings.add(model.place(), "condim 4", "friction about the normal alone is left out");
         }
-        let surface = contact.surface(w);
+        if !contact.is_exact() {
+            warnings.add(model.place(), "solimp", "contacts have the powers 1 and 2 only");
+        }
+        let [normal, across] = contact.yielding(flags.pyramids, flags.ratio);
+        let (surface, soft) =
+            (contact.surface(normal * w), contact.soft([normal, across].map(|factor| factor * w), flags.pyramids));
         if let Some(first) = surfaces.get(&ascending(colliders)) {
-            let first = &mut robot.pairs[*first].surface;
-            *first = both(first, &surface);
+            let first = &mut robot.pairs[*first];
+            first.surface = both(&first.surface, &surface);
+            first.soft = first.soft.map(|first| added(first, soft));
         } else {
             surfaces.insert(ascending(colliders), robot.pairs.len());
-            robot.add_pair(colliders, surface);
+            let pair = robot.add_pair(colliders, surface);
+            robot.pairs[pair.index()].soft = Some(soft);
         }
     }
     Ok(())
@@ -260,10 +267,15 @@ fn both(a: &Surface, b: &Surface) -> Surface {
     }
 }
 
+fn added(a: SoftContact, b: SoftContact) -> SoftContact {
+    let friction = [0, 1].map(|k: usize| a.friction[k] + b.friction[k]);
+    SoftContact { inertia: a.inertia + b.inertia, friction, margin: a.margin.max(b.margin), ..a }
+}
+
 fn check_pair(element: Element<'_>, warnings: &mut Warnings) -> Result<(), ReadError> {
-    let read = ["name", "class", "geom1", "geom2", "condim", "friction", "solref", "solimp"];
+    let read = ["name", "class", "geom1", "geom2", "condim", "friction", "solref", "solimp", "margin"];
     let ignored =
-        [("margin gap adhesion", "contacts begin where surfaces meet"), ("solreffriction", "how MuJoCo computes")];
+        [("gap adhesion", "contacts begin at their margin and do not pull"), ("solreffriction", "how MuJoCo computes")];
     element.check(&read, &ignored, warnings)
 }
 

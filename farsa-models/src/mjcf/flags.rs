@@ -29,6 +29,10 @@ pub(crate) struct Flags {
     pub(crate) filter_parent: bool,
     /// Numbers that replace those of all contacts.
     pub(crate) contacts: Option<Override>,
+    /// True for pyramidal friction cones.
+    pub(crate) pyramids: bool,
+    /// Stiffness of friction relative to that of the normal, `impratio`.
+    pub(crate) ratio: f64,
 }
 
 impl Flags {
@@ -46,6 +50,8 @@ impl Flags {
             clamp_control: true,
             filter_parent: true,
             contacts: None,
+            pyramids: true,
+            ratio: 1.0,
         };
         let [mut gravity, mut constraint, mut passive, mut replaced] = [true, true, true, false];
         let mut contacts = Override::default();
@@ -54,6 +60,16 @@ impl Flags {
             flags.gravity = option.array("gravity")?.or(flags.gravity);
             flags.passive_groups = option.list("actuatorgroupdisable", 0, 31)?.unwrap_or(flags.passive_groups);
             contacts.read(option)?;
+            let cone = option.word("cone", &["pyramidal", "elliptic"])?;
+            flags.pyramids = cone.map_or(flags.pyramids, |cone| cone == "pyramidal");
+            flags.ratio = option.number("impratio")?.unwrap_or(flags.ratio);
+            if !(flags.ratio > 0.0 && flags.ratio.is_finite()) {
+                return Err(option.wrong(
+                    "impratio",
+                    option.attribute("impratio").unwrap_or_default(),
+                    "but must be positive",
+                ));
+            }
             for flag in option.all("flag") {
                 check_flag(flag, context)?;
                 let set = |name, value: &mut bool| {
@@ -99,14 +115,14 @@ impl Flags {
 }
 
 fn check_option(option: Element<'_>, context: &mut Context<'_>) -> Result<(), ReadError> {
-    let read = ["gravity", "actuatorgroupdisable", "o_solref", "o_solimp", "o_friction"];
+    let read =
+        ["gravity", "actuatorgroupdisable", "o_solref", "o_solimp", "o_friction", "o_margin", "cone", "impratio"];
     let ignored = [
         ("density viscosity wind", "a description has no fluid"),
-        ("o_margin", "contacts begin where surfaces meet"),
         (
-            "timestep integrator cone jacobian solver iterations tolerance ls_iterations ls_tolerance \
+            "timestep integrator jacobian solver iterations tolerance ls_iterations ls_tolerance \
              noslip_iterations noslip_tolerance mpr_iterations mpr_tolerance ccd_iterations ccd_tolerance \
-             sdf_iterations sdf_initpoints impratio sleep_tolerance collision",
+             sdf_iterations sdf_initpoints sleep_tolerance collision",
             WORLD,
         ),
         ("magnetic", MUJOCO),

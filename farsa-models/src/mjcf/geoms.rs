@@ -151,7 +151,7 @@ impl MeshAsset<'_, '_> {
 }
 
 /// Attributes of a geom without effect in MuJoCo, if it touches nothing or its body has an `inertial`.
-pub(crate) const CONDITIONAL: [&str; 11] = [
+pub(crate) const CONDITIONAL: [&str; 12] = [
     "contype",
     "conaffinity",
     "condim",
@@ -159,6 +159,7 @@ pub(crate) const CONDITIONAL: [&str; 11] = [
     "friction",
     "solref",
     "solimp",
+    "margin",
     "solmix",
     "mass",
     "density",
@@ -175,7 +176,7 @@ pub(crate) fn check_geom(element: Element<'_>, warnings: &mut Warnings) -> Resul
     let ignored = [
         ("material castshadow user", SHOW),
         ("hfield", "height fields are not described"),
-        ("margin gap adhesion surfacevel", "contacts begin where surfaces meet, and do not pull or move"),
+        ("gap adhesion surfacevel", "contacts begin at their margin, and do not pull or move"),
         ("fluidshape fluidcoef", "a description has no fluid"),
     ];
     element.check(&read, &ignored, warnings)

@@ -24,18 +24,26 @@ struct Freedom {
     effort: f64,
 }
 
+/// Inverse weights of a robot.
+pub(crate) struct InverseWeights {
+    /// Weights of segments [1/kg].
+    pub(crate) bodies: Vec<f64>,
+    /// Weights of the joints that turn or slide [1/(kg m2) or 1/kg], and 0 for others.
+    pub(crate) joints: Vec<f64>,
+}
+
 /// Returns for every segment the acceleration of its center of mass per force on it [1/kg], as the mean over the three
 /// directions. All joints are at 0, armatures are included, and nothing else acts. It is 0 for a segment that cannot
 /// move.
 ///
-/// MuJoCo's `body_invweight0`, first component. Time and memory are proportional to the number of segments.
-/// Articulated-body inertias pass from the ends of the trees to their roots ([Featherstone2008] section 7.3). Responses
-/// to a force on each segment alone pass back. MuJoCo factorizes the mass matrix instead (section 6.5), which takes
-/// time cubic in a chain's length.
+/// MuJoCo's `body_invweight0`, first component. Joints have the acceleration per effort on them, its `dof_invweight0`.
+/// Time and memory are proportional to the number of segments. Articulated-body inertias pass from the ends of the
+/// trees to their roots ([Featherstone2008] section 7.3). Responses to a force on each segment alone pass back. MuJoCo
+/// factorizes the mass matrix instead (section 6.5), which takes time cubic in a chain's length.
 ///
 /// # Errors
 /// The errors of [`Robot::validate`].
-pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
+pub(crate) fn inverse_weights(robot: &Robot) -> Result<InverseWeights, RobotError> {
     let tree = KinematicTree::new(robot)?;
     let poses = tree.poses(&vec![0.0; tree.joints().len()]);
     let centres: Vec<_> = robot.segments.iter().zip(&poses).map(|(s, pose)| pose.transform(s.centre)).collect();
@@ -66,12 +74,17 @@ pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
     freedoms.reverse();
 
     let mut yields: Vec<Matrix> = Vec::with_capacity(robot.segments.len());
+    let mut joints = vec![0.0; robot.segments.len()];
     for (i, segment) in robot.segments.iter().enumerate() {
         let carried = segment.parent.map(|parent| {
             let r = step(i, parent);
             mapped(&yields[parent.index()], |(turn, slide)| (turn, add(slide, cross(turn, r))))
         });
         let mut matrix = carried.unwrap_or_default();
+        if let [Freedom { force, effort, .. }] = &freedoms[i][..] {
+            // An effort on the joint accelerates what hangs on it, and by its reaction what carries it.
+            joints[i] = (1.0 / effort + product(*force, applied(&matrix, *force)) / (effort * effort)).max(0.0);
+        }
         for Freedom { axis, force, effort } in freedoms[i].iter().rev() {
             matrix = mapped(&matrix, |motion| {
                 let by = -product(motion, *force) / effort;
@@ -83,7 +96,7 @@ pub(crate) fn inverse_weights(robot: &Robot) -> Result<Vec<f64>, RobotError> {
     }
     // A segment below the smallest number has no weight either, because `max` drops NaN.
     let mean = |matrix: &Matrix| ((matrix[3].1[0] + matrix[4].1[1] + matrix[5].1[2]) / 3.0).max(0.0);
-    Ok(yields.iter().map(mean).collect())
+    Ok(InverseWeights { bodies: yields.iter().map(mean).collect(), joints })
 }
 
 /// The inertia of a segment about its center of mass.
@@ -175,7 +188,7 @@ mod tests {
         robot.add_segment(Segment::new("cart", Some(BodyId(1)), slide, ball));
         let hinge = Joint::revolute("hinge", [0.0, 0.0, 1.0], Pose::identity(), [-1.0, 1.0]);
         robot.add_segment(Segment::new("rod", None, hinge, ball.placed(&Pose::at([0.5, 0.0, 0.0]))));
-        let weights = inverse_weights(&robot).expect("a valid robot");
+        let weights = inverse_weights(&robot).expect("a valid robot").bodies;
         // Free: 1/m. Fixed: 0. Sliding: one direction of three. Turning: r2 / I in one direction of three.
         let about = 0.4 * 2.0 * 0.01 + 2.0 * 0.25;
         for (weights, expected) in weights.iter().zip([0.5, 0.0, 1.0 / 9.0, 0.25 / about / 3.0]) {
@@ -301,7 +314,7 @@ mod tests {
 
     /// Computes the largest difference from the definition, relative to the weight itself.
     fn difference(robot: &Robot) -> f64 {
-        let weights = inverse_weights(robot).expect("a valid robot");
+        let weights = inverse_weights(robot).expect("a valid robot").bodies;
         let pairs = weights.iter().zip(dense(robot));
         pairs.map(|(a, b)| if *a == b { 0.0 } else { (a - b).abs() / b.abs().max(1e-300) }).fold(0.0, f64::max)
     }
@@ -329,7 +342,7 @@ mod tests {
             let body = MassProperties::cuboid(1.0, [0.05, 0.04, 0.1]).placed(&Pose::at([0.0, 0.0, 0.1]));
             robot.add_segment(Segment::new(&format!("s{i}"), i.checked_sub(1).map(BodyId), joint, body));
         }
-        let weights = inverse_weights(&robot).expect("a valid robot");
+        let weights = inverse_weights(&robot).expect("a valid robot").bodies;
         let exact = [0.1299419849484253, 0.1961330474749258, 0.19851258709911557, 0.27848049008710474];
         for (i, exact) in [0, 1, 150, 299].into_iter().zip(exact) {
             assert!((weights[i] / exact - 1.0).abs() < 1e-14, "{} instead of {exact}", weights[i]);
@@ -351,7 +364,7 @@ mod tests {
             };
             robot.add_segment(Segment::new(&format!("s{i}"), parent, joint, ball));
         }
-        let weights = inverse_weights(&robot).expect("a valid robot");
+        let weights = inverse_weights(&robot).expect("a valid robot").bodies;
         assert!(weights[..60_000].iter().all(|weight| *weight == 0.5));
         assert!(
             weights[60_000..].iter().all(|weight| *weight > 0.0 && *weight < 0.5),
@@ -369,7 +382,7 @@ mod tests {
             let hinge = Joint::revolute(&format!("j{i}"), [0.0, 1.0, 0.0], Pose::at([1e200; 3]), [-1.0, 1.0]);
             robot.add_segment(Segment::new(&format!("s{i}"), i.checked_sub(1).map(|i| BodyId(i as u16)), hinge, body));
         }
-        let weights = inverse_weights(&robot).expect("a valid robot");
+        let weights = inverse_weights(&robot).expect("a valid robot").bodies;
         assert!(weights.iter().all(|weight| *weight >= 0.0), "{weights:?}");
     }
 }

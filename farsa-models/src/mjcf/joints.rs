@@ -8,6 +8,7 @@ use crate::context::Context;
 use crate::error::{ReadError, SourceLocation};
 use crate::mjcf::classes::Classed;
 use crate::mjcf::compiler::Compiler;
+use crate::mjcf::limits::Limits;
 use crate::mjcf::reasons::SHOW;
 use crate::vector::norm;
 use crate::warnings::Warnings;
@@ -26,15 +27,19 @@ pub(crate) fn check_joint(element: Element<'_>, warnings: &mut Warnings) -> Resu
         "armature",
         "damping",
         "stiffness",
+        "springref",
         "frictionloss",
+        "solreflimit",
+        "solimplimit",
         "actuatorfrcrange",
         "actuatorfrclimited",
     ];
     let ignored = [
         ("group", SHOW),
-        ("springref springyield", "a joint's spring is not described"),
-        ("springdamper", "a joint's spring is not described, nor the damping that follows from it"),
-        ("solreflimit solimplimit solreffriction solimpfriction margin", "stops are the world's"),
+        ("springyield", "springs do not yield"),
+        ("springdamper", "only `stiffness` and `damping` are read"),
+        ("solreffriction solimpfriction", "how MuJoCo computes"),
+        ("margin", "stops begin at the limits"),
         ("actuatorgravcomp", "weights are not compensated"),
         ("user", "a user's own"),
     ];
@@ -47,15 +52,19 @@ pub(crate) struct BodyJoint {
     pub(crate) joint: Joint,
     /// Place in the frame that the previous joint left.
     pub(crate) anchor: [f64; 3],
+    /// Position in the configuration of the file, `ref`.
+    pub(crate) reference: f64,
     /// Largest effort of all actuators, and the line that gives it.
     pub(crate) effort: Option<(f64, SourceLocation)>,
+    /// Numbers of the limits, if it has any.
+    pub(crate) limits: Option<Limits>,
 }
 
 impl BodyJoint {
     pub(crate) fn free(element: Element<'_>) -> Self {
         let name = element.attribute("name").unwrap_or_default().into();
         let joint = Joint { name, ..Joint::floating(Pose::identity()) };
-        Self { joint, anchor: [0.0; 3], effort: None }
+        Self { joint, anchor: [0.0; 3], reference: 0.0, effort: None, limits: None }
     }
 }
 
@@ -106,25 +115,27 @@ pub(crate) fn joint(
     let range =
         ends.map_or([f64::NEG_INFINITY, f64::INFINITY], |ends| range_from_file(joined(ends.map(|end| end * unit))));
     let flags = &compiler.flags;
-    for (name, why, applies) in [
-        ("stiffness", "a joint's spring is not described", flags.spring),
-        ("frictionloss", "a joint's friction is not described", flags.friction_loss),
-    ] {
-        let given = classed.list(name, 1, 3)?.is_some_and(|list| list.iter().any(|x| *x != 0.0));
-        if applies && given {
+    let [mut damping, mut stiffness] = [0.0; 2];
+    for (number, name, of, applies) in
+        [(&mut damping, "damping", "speed", flags.damper), (&mut stiffness, "stiffness", "stretch", flags.spring)]
+    {
+        // Numbers after the first belong to higher powers.
+        let list = classed.list(name, 1, 3)?.filter(|_| applies).unwrap_or_else(|| vec![0.0]);
+        if list.iter().skip(1).any(|x| *x != 0.0) {
+            let why = format!("only what is proportional to the {of} is described");
             context.warnings.add(element.place(), format!("joint `{name}`"), why);
         }
+        *number = list[0];
+        if !(*number >= 0.0 && number.is_finite()) {
+            return Err(element.wrong(name, &number.to_string(), "but must not be negative or endless"));
+        }
     }
-    // Numbers after the first belong to higher powers of the speed.
-    let damping = classed.list("damping", 1, 3)?.filter(|_| flags.damper).unwrap_or_else(|| vec![0.0]);
-    if damping.iter().skip(1).any(|x| *x != 0.0) {
-        context.warnings.add(element.place(), "joint `damping`", "only what is proportional to the speed is described");
+    let friction = classed.not_negative("frictionloss")?.filter(|_| flags.friction_loss).unwrap_or(0.0);
+    let rest = classed.number("springref")?.unwrap_or(0.0) * unit;
+    let mut joint = Joint::revolute(name, axis, Pose::identity(), range).with_damping(damping).with_friction(friction);
+    if stiffness > 0.0 {
+        joint = joint.with_spring(stiffness, rest);
     }
-    let damping = damping[0];
-    if !(damping >= 0.0 && damping.is_finite()) {
-        return Err(element.wrong("damping", &damping.to_string(), "but must not be negative or endless"));
-    }
-    let mut joint = Joint::revolute(name, axis, Pose::identity(), range).with_damping(damping);
     joint.kind = kind;
     joint.armature = classed.not_negative("armature")?.unwrap_or(0.0);
     // `ref` is the joint's position in the configuration of the file. Positions have this meaning here, too. At
@@ -144,5 +155,9 @@ pub(crate) fn joint(
     let automatic = compiler.automatic_limits;
     let effort = classed.largest("actuatorfrclimited", "actuatorfrcrange", automatic, &mut context.warnings)?;
     let effort = effort.map(|largest| (largest, element.place()));
-    Ok(BodyJoint { joint, anchor, effort })
+    let limits = if ends.is_some() { Some(Limits::from_joint(classed)?) } else { None };
+    if limits.is_some_and(|limits| !limits.is_exact()) {
+        context.warnings.add(element.place(), "solimplimit", "stops have the powers 1 and 2 only");
+    }
+    Ok(BodyJoint { joint, anchor, reference, effort, limits })
 }

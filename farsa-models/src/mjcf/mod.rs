@@ -32,6 +32,9 @@ mod inertials;
 /// Joints.
 mod joints;
 
+/// Limits of joints.
+mod limits;
+
 /// Geoms and meshes.
 mod geoms;
 
@@ -56,11 +59,15 @@ mod inverse_weight;
 /// Shapes instead of meshes.
 mod without_meshes;
 
+/// Named states.
+mod keyframes;
+
 /// From a robot to the text of a file.
 mod write;
 
 /// Inertias in a file.
 mod written_inertia;
 
+pub use keyframes::Keyframe;
 pub(crate) use without_meshes::without_meshes;
-pub use write::{Keyframe, MjcfOptions, write};
+pub use write::{MjcfOptions, write};

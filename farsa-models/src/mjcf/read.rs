@@ -13,6 +13,7 @@ use crate::mjcf::classes::{ACTUATORS, Classes};
 use crate::mjcf::compiler::Compiler;
 use crate::mjcf::contacts::contacts;
 use crate::mjcf::flags::Flags;
+use crate::mjcf::keyframes::{Keyframe, keyframes};
 use crate::mjcf::reasons::{FIT, MUJOCO};
 use crate::repair::{check_masses, move_fixed_masses};
 use crate::xml::tree::Tree;
@@ -23,6 +24,7 @@ pub(crate) struct ModelParts {
     pub(crate) frames: Vec<Frame>,
     pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) contacts: bool,
+    pub(crate) keyframes: Vec<Keyframe>,
     pub(crate) meshes: Vec<DrawnMesh>,
 }
 
@@ -32,12 +34,11 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<ModelParts,
     let ignored = [
         ("size statistic visual", MUJOCO),
         ("sensor", "sensors are made beside the robot"),
-        ("keyframe", "postures are not described"),
         ("custom extension", "a user's own"),
         ("tendon", "a description has no tendons"),
         ("deformable", "all bodies are rigid"),
     ];
-    let read = ["compiler", "option", "default", "asset", "worldbody", "contact", "actuator", "equality"];
+    let read = ["compiler", "option", "default", "asset", "worldbody", "contact", "actuator", "equality", "keyframe"];
     model.check_children(&read, &ignored, &mut context.warnings)?;
     let compiler = Compiler::from_model(model, context)?;
     for element in model.all("equality") {
@@ -69,11 +70,13 @@ pub(crate) fn read(tree: &Tree, context: &mut Context<'_>) -> Result<ModelParts,
             (segment.mass, segment.inertia) = (mass, inertia);
         }
     }
+    bodies.set_stops(&mut robot).map_err(|error| ReadError::Robot { file: model.place().file, error })?;
     actuators(model, &mut robot, &compiler, &classes, &bodies, context)?;
     contacts(model, &mut robot, &classes, &bodies, &compiler.flags, context)?;
+    let keyframes = keyframes(model, &robot, &bodies.references, context)?;
     let meshes = bodies.drawn(&robot, context);
     // Defaults and meshes may be of no element that was read. Their attributes are all of the format.
     model.list_unread(&["default", "mesh", "name", "class", "childclass"], &mut context.warnings);
     let Flags { gravity, contact, .. } = compiler.flags;
-    Ok(ModelParts { robot, frames: bodies.frames, gravity, contacts: contact, meshes })
+    Ok(ModelParts { robot, frames: bodies.frames, gravity, contacts: contact, keyframes, meshes })
 }

@@ -80,7 +80,7 @@ fn shaped<'t>(
         return Ok(None);
     }
     let Some((solid, at)) = geom(&classed, &Pose::identity(), compiler, meshes, context)? else { return Ok(None) };
-    let (shape, inner, _) = solid.shape();
+    let (shape, inner, _) = solid.shape(context.options);
     let Pose { position, rotation: [x, y, z, w] } = at.compose(&inner);
     let (kind, sizes) = kind_and_sizes(&shape);
     let own = ["mesh", "type", "size", "pos", "fromto", "fitscale"];

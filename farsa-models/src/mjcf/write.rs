@@ -5,12 +5,14 @@ use std::fmt::Write as _;
 
 use farsa_body::Pose;
 use farsa_body::actuators::{Held, Law};
-use farsa_body::ports::BodyId;
-use farsa_body::robot::{Actuator, Collider, JointKind, Pair, Robot, RobotError, Segment, Shape, Visual};
+use farsa_body::robot::{Actuator, Collider, JointKind, Pair, Robot, RobotError, Segment, Shape, SoftContact, Visual};
 use farsa_num::Scalar;
 
 use crate::bounds::{check_sizes, effort_in_file, range_in_file, separated};
-use crate::mjcf::inverse_weight::inverse_weights;
+use crate::mjcf::inverse_weight::{InverseWeights, inverse_weights};
+use crate::mjcf::keyframes::Keyframe;
+use crate::mjcf::limits::{STIFF, limit_attributes};
+use crate::mjcf::surface::{attributes, solimp, yielding_of_pyramid};
 use crate::mjcf::written_inertia::inertial;
 use crate::xml::write::{
     GROUND, Lines, colliders_by_body, friction_of_ground, numbers, quoted, segment_names, visuals_by_body,
@@ -34,18 +36,6 @@ impl Default for MjcfOptions {
     fn default() -> Self {
         Self { time_step: 0.0025, gravity: [0.0, 0.0, -9.81], impedance_ratio: 10.0, keyframes: Vec::new() }
     }
-}
-
-/// A named state at rest.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Keyframe {
-    /// Name of the state.
-    pub name: String,
-    /// Position of each joint [rad or m], in the order of [`Robot::joints`]. Missing positions are 0.
-    pub joints: Vec<f64>,
-    /// Pose of each floating segment. All other segments follow from the positions of the joints.
-    pub bodies: Vec<(BodyId, Pose<f64>)>,
 }
 
 /// Least and largest impedance that MuJoCo allows.
@@ -78,14 +68,16 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 ///
 /// Segments, joints, inertias and shapes are exact to the last digit, and only pairs of the description may touch. Some
 /// parts are replaced, since MuJoCo does not have them:
-/// - muscle pairs and custom laws with a stiffness are `motor`s with the commanded effort, and the caller evaluates the law
+/// - muscle pairs and custom laws with a stiffness are `motor`s with the commanded effort, and the caller evaluates the
+///   law
 /// - position servos are position actuators with a force range, torque motors motors with a control range
-/// - a contact point has our stiffness at rest, but critical damping, and the mass of heavier bodies, without which
-///   MuJoCo's contacts are unstable at steps of this size
-/// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio)
+/// - a contact point without an inertia has our stiffness at rest, but critical damping, and the mass of heavier
+///   bodies, without which MuJoCo's contacts are unstable at steps of this size
+/// - friction is elliptic and creeps by force / (2 tau stiffness impedance ratio), and that of soft pairs gets this
+///   ratio, too. Only if all pairs with friction are pyramids, these are written
 /// - friction on the ground is `frictionloss` of each sliding joint by itself, with a comment in the file
 /// - visuals are geoms of group 2, and the colliders behind them geoms of group 3, which MuJoCo does not show
-/// - joint stops are MuJoCo's, as stiff as the step allows.
+/// - joint stops without a law are MuJoCo's, as stiff as the step allows.
 ///
 /// If a segment is called `world`, a `_` is appended to its name. Note that MuJoCo 4.0.0 refuses planes on segments that
 /// move, and chains of more than 496 bodies. They are written nevertheless.
@@ -95,18 +87,21 @@ fn impedance(stiffness: f64, w: f64, h: f64) -> (f64, f64) {
 /// the ratio is not positive. This also happens for a shape of 1e9 m or more, which no reader would accept.
 pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError> {
     check(options)?;
-    let weights = inverse_weights(robot)?;
+    let InverseWeights { bodies: weights, joints } = inverse_weights(robot)?;
     check_sizes(robot)?;
     let mut out = Lines::default();
     out.open(&format!("mujoco model={}", quoted(&robot.name)));
-    head(robot, &mut out, options);
+    let is_pyramid = |pair: &Pair| pair.soft.is_some_and(|soft| soft.is_pyramid);
+    let pyramids = robot.pairs.iter().any(is_pyramid)
+        && robot.pairs.iter().all(|pair| is_pyramid(pair) || pair.surface.friction == 0.0);
+    head(robot, &mut out, options, pyramids);
     out.open("worldbody");
     let nested = nested(robot);
-    bodies(robot, &nested, &mut out);
+    bodies(robot, &nested, (&joints, options.time_step), &mut out);
     out.close("worldbody");
     out.open("contact");
     for pair in &robot.pairs {
-        out.line(&pair_line(robot, pair, &weights, options.time_step));
+        out.line(&pair_line(robot, pair, &weights, options.time_step, pyramids));
     }
     out.close("contact");
     out.open("actuator");
@@ -126,7 +121,7 @@ pub fn write(robot: &Robot, options: &MjcfOptions) -> Result<String, RobotError>
     Ok(out.text)
 }
 
-fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
+fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions, pyramids: bool) {
     let is_custom = |law: &Law<f64>| match law {
         Law::MusclePair(_) => true,
         Law::Held(held) => held.stiffness > 0.0,
@@ -142,13 +137,14 @@ fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
         out.line(GROUND);
     }
     out.line("<compiler angle=\"radian\" autolimits=\"false\" inertiafromgeom=\"false\" fusestatic=\"false\"/>");
-    let (h, ratio, gravity) = (options.time_step, options.impedance_ratio, numbers(&options.gravity));
+    let (h, gravity) = (options.time_step, numbers(&options.gravity));
+    let (cone, ratio) = if pyramids { ("pyramidal", 1.0) } else { ("elliptic", options.impedance_ratio) };
     out.line(&format!(
-        "<option timestep=\"{h:?}\" gravity=\"{gravity}\" integrator=\"implicitfast\" cone=\"elliptic\" \
+        "<option timestep=\"{h:?}\" gravity=\"{gravity}\" integrator=\"implicitfast\" cone=\"{cone}\" \
          impratio=\"{ratio:?}\"/>"
     ));
     // A stop reacts as fast as MuJoCo allows and yields by a hundredth of what a free joint would.
-    let stop = format!("solreflimit=\"{:?} 1.0\" solimplimit=\"0.99 0.99 0.001 0.5 2.0\"", 2.0 * h);
+    let stop = format!("solreflimit=\"{:?} 1.0\" solimplimit=\"{STIFF:?} {STIFF:?} 0.001 0.5 2.0\"", 2.0 * h);
     out.open("default");
     out.line(&format!("<joint {stop}/>"));
     out.line("<geom contype=\"0\" conaffinity=\"0\"/>");
@@ -156,7 +152,7 @@ fn head(robot: &Robot, out: &mut Lines, options: &MjcfOptions) {
 }
 
 /// The shapes of the world and the bodies with theirs.
-fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
+fn bodies(robot: &Robot, nested: &[(usize, usize)], (weights, h): (&[f64], f64), out: &mut Lines) {
     let names = segment_names(robot, "world");
     let (colliders, losses) = (colliders_by_body(robot), friction_of_ground(robot));
     let visuals = visuals_by_body(robot);
@@ -170,7 +166,7 @@ fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
         open += 1;
         let segment = &robot.segments[i];
         out.open(&format!("body name={}{}", quoted(&names[i]), placed(&segment.joint.placement)));
-        if let Some(joint) = joint(segment, losses[i]) {
+        if let Some(joint) = joint(segment, losses[i], [weights[i], h]) {
             out.line(&joint);
         }
         if let Some(inertial) = inertial(segment) {
@@ -183,17 +179,31 @@ fn bodies(robot: &Robot, nested: &[(usize, usize)], out: &mut Lines) {
     }
 }
 
-fn pair_line(robot: &Robot, pair: &Pair, weights: &[f64], h: f64) -> String {
+fn pair_line(robot: &Robot, pair: &Pair, weights: &[f64], h: f64, pyramids: bool) -> String {
     let [a, b] = pair.colliders.map(|i| &robot.colliders[i]);
     let weight = |collider: &Collider| collider.body.map_or(0.0, |body| weights[body.index()]);
     let surface = &pair.surface;
-    let (tau, d) = impedance(surface.stiffness, weight(a) + weight(b), h);
-    let (dimensions, rolling) = if surface.rolling_friction > 0.0 { (6, surface.rolling_friction) } else { (3, 0.0) };
+    let w = weight(a) + weight(b);
+    let edges =
+        if pyramids && surface.friction > 0.0 { yielding_of_pyramid(surface.friction, 3.0, 1.0)[0] } else { 1.0 };
+    let numbers_of_pair = |soft: SoftContact| [surface.stiffness, surface.damping, soft.inertia];
+    let of_file = pair.soft.and_then(|soft| attributes(numbers_of_pair(soft), w * edges));
+    let (solref, d) = of_file.unwrap_or_else(|| {
+        let (tau, d) = impedance(surface.stiffness, w, h);
+        ([tau, 1.0], d)
+    });
+    let (dimensions, rolling) = match surface.rolling_friction {
+        rolling if rolling > 0.0 => (6, rolling),
+        _ if pyramids && surface.friction == 0.0 => (1, 0.0),
+        _ => (3, 0.0),
+    };
     let friction = numbers(&[surface.friction, surface.friction, rolling, rolling, rolling]);
-    let (solref, solimp) = (numbers(&[tau, 1.0]), numbers(&[d, d, 0.001, 0.5, 2.0]));
+    let (solref, solimp) = (numbers(&solref), numbers(&solimp(d, pair.soft.and_then(|soft| soft.impedance))));
+    let margin = pair.soft.map_or(0.0, |soft| soft.margin);
+    let margin = if margin > 0.0 { format!(" margin=\"{margin:?}\"") } else { String::new() };
     format!(
         "<pair geom1={} geom2={} condim=\"{dimensions}\" friction=\"{friction}\" solref=\"{solref}\" \
-         solimp=\"{solimp}\"/>",
+         solimp=\"{solimp}\"{margin}/>",
         quoted(&a.name),
         quoted(&b.name)
     )
@@ -202,20 +212,27 @@ fn pair_line(robot: &Robot, pair: &Pair, weights: &[f64], h: f64) -> String {
 fn actuator_line(robot: &Robot, actuator: &Actuator) -> String {
     let joint = &robot.segments[actuator.joint.index()].joint;
     let head = format!("name={} joint={}", quoted(&actuator.name), quoted(&joint.name));
+    // MuJoCo's ranges have two ends.
+    let commands = actuator.command_range.map_or_else(String::new, |range| {
+        format!(" ctrllimited=\"true\" ctrlrange=\"{}\"", numbers(&separated(range_in_file(range))))
+    });
     match actuator.law {
         Law::Servo(servo) => format!(
-            "<position {head} kp=\"{:?}\" kv=\"{:?}\"{}/>",
+            "<position {head} kp=\"{:?}\" kv=\"{:?}\"{commands}{}/>",
             servo.stiffness,
             servo.damping,
             limited("force", servo.limit)
         ),
+        Law::Torque(motor) if actuator.command_range.is_some() => {
+            format!("<motor {head}{commands}{}/>", limited("force", motor.limit))
+        }
         Law::Torque(motor) => format!("<motor {head}{}/>", limited("ctrl", motor.limit)),
         Law::Velocity(motor) => {
-            format!("<velocity {head} kv=\"{:?}\"{}/>", motor.gain, limited("force", motor.limit))
+            format!("<velocity {head} kv=\"{:?}\"{commands}{}/>", motor.gain, limited("force", motor.limit))
         }
         Law::Held(Held { stiffness: 0.0, damping }) => {
             let bias = numbers(&[0.0, 0.0, -damping]);
-            format!("<general {head} gainprm=\"1.0\" biastype=\"affine\" biasprm=\"{bias}\"/>")
+            format!("<general {head} gainprm=\"1.0\" biastype=\"affine\" biasprm=\"{bias}\"{commands}/>")
         }
         Law::MusclePair(_) | Law::Held(_) => format!("<motor {head}/>"),
     }
@@ -298,8 +315,8 @@ fn placed(pose: &Pose<f64>) -> String {
     text
 }
 
-/// A joint, if the segment has one, with what friction takes from it.
-fn joint(segment: &Segment, loss: f64) -> Option<String> {
+/// A joint with this inverse weight in a file for this step, if the segment has one, with what friction takes from it.
+fn joint(segment: &Segment, loss: f64, [weight, h]: [f64; 2]) -> Option<String> {
     let joint = &segment.joint;
     let name = if joint.name.is_empty() { String::new() } else { format!(" name={}", quoted(&joint.name)) };
     let kind = match joint.kind {
@@ -315,9 +332,16 @@ fn joint(segment: &Segment, loss: f64) -> Option<String> {
         format!(" limited=\"true\" range=\"{}\"", numbers(&separated(range_in_file(joint.range))))
     };
     let (axis, armature, damping) = (numbers(&joint.axis), joint.armature, joint.damping);
+    let spring = if joint.stiffness > 0.0 {
+        format!(" stiffness=\"{:?}\" springref=\"{:?}\"", joint.stiffness, joint.rest)
+    } else {
+        String::new()
+    };
+    let stop = joint.stop.map_or_else(String::new, |stop| limit_attributes(stop, weight, h));
+    let loss = loss + joint.friction;
     let loss = if loss > 0.0 { format!(" frictionloss=\"{loss:?}\"") } else { String::new() };
     Some(format!(
-        "<joint{name} type=\"{kind}\" axis=\"{axis}\"{range} armature=\"{armature:?}\" damping=\"{damping:?}\"{loss}/>"
+        "<joint{name} type=\"{kind}\" axis=\"{axis}\"{range} armature=\"{armature:?}\" damping=\"{damping:?}\"{spring}{stop}{loss}/>"
     ))
 }
 
@@ -338,6 +362,7 @@ pub(super) fn kind_and_sizes(shape: &Shape) -> (&'static str, Vec<f64>) {
     match *shape {
         Shape::Sphere { radius } => ("sphere", vec![radius]),
         Shape::Capsule { radius, half_length } => ("capsule", vec![radius, half_length]),
+        Shape::Cylinder { radius, half_length } => ("cylinder", vec![radius, half_length]),
         Shape::Box { half } => ("box", half.to_vec()),
         // Infinite. The third number is the distance of the lines drawn on it.
         Shape::Plane => ("plane", vec![0.0, 0.0, 1.0]),
@@ -379,9 +404,8 @@ mod tests {
             (2, 1)
         );
         let read = crate::Imported::from_text(&text, &crate::ReadOptions::default()).expect("a valid file");
-        let losses = read.warnings.iter().filter(|warning| warning.what.contains("friction"));
-        let losses: usize = losses.map(|warning| warning.count).sum();
-        assert_eq!(losses, 3, "{:?}", read.warnings);
+        let friction = read.robot.segments.iter().map(|segment| segment.joint.friction);
+        assert_eq!(friction.collect::<Vec<_>>(), [1.5, 1.5, 0.03]);
     }
 
     #[test]

@@ -52,7 +52,8 @@ pub(super) fn joined(solids: &[Placed], kind: &str, context: &mut Context<'_>) -
         let first = next;
         let capsule = solids.get(first + 1..first + 3).and_then(|ends| capsule(solid, placement, &ends[0], &ends[1]));
         next += if capsule.is_some() { 3 } else { 1 };
-        let (shape, at, why) = capsule.map_or_else(|| solid.shape(), |shape| (shape, Pose::identity(), None));
+        let (shape, at, why) =
+            capsule.map_or_else(|| solid.shape(context.options), |shape| (shape, Pose::identity(), None));
         if let Some(why) = why {
             context.warnings.add(place.clone(), format!("{} in {kind}", solid.label()), why);
         }

@@ -16,6 +16,7 @@ use crate::repair::repair_masses;
 use crate::urdf::elements::{NOTED, check_children, check_processed};
 use crate::urdf::geometry::{Placed, joined, origin, solid};
 use crate::urdf::visuals::{MeshCollider, collision_meshes, colors, visuals};
+use crate::urdf::write::MAX_SPEED;
 use crate::vector::norm;
 use crate::xml::tree::{Element, Tree};
 
@@ -247,12 +248,14 @@ fn joint(element: Element<'_>, context: &mut Context<'_>) -> Result<Joint, ReadE
             return Err(given.wrong("xyz", given.needed("xyz")?, "but must be a direction"));
         }
     }
-    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+    let (mut range, mut speed_limit) = ([f64::NEG_INFINITY, f64::INFINITY], None);
     if let Some(limit) = element.one("limit")? {
         let read = ["lower", "upper", "effort", "velocity"];
         limit.check_open(&read, &mut context.warnings)?;
-        if limit.attribute("velocity").is_some() {
-            context.warnings.add(limit.place(), "limit `velocity`", "a description has no largest speed");
+        if context.options.joint_speeds {
+            speed_limit = largest_speed(limit)?;
+        } else if limit.attribute("velocity").is_some() {
+            context.warnings.add(limit.place(), "limit `velocity`", "is not read without the option `joint_speeds`");
         }
         if kind != "continuous" {
             let end = |name| Ok(limit.list(name, 1, 1)?.map_or(0.0, |list| list[0]));
@@ -269,20 +272,29 @@ fn joint(element: Element<'_>, context: &mut Context<'_>) -> Result<Joint, ReadE
     } else if kind != "continuous" {
         return Err(element.missing("limit"));
     }
-    let mut made = Joint { range, ..Joint::revolute(name, axis, placement, range) };
+    let mut made = Joint { range, speed_limit, ..Joint::revolute(name, axis, placement, range) };
     made.kind = single;
     if let Some(dynamics) = element.one("dynamics")? {
         dynamics.check_open(&["damping", "friction"], &mut context.warnings)?;
-        made.damping = dynamics.number("damping")?.unwrap_or(0.0);
-        if made.damping < 0.0 {
-            let value = dynamics.attribute("damping").unwrap_or_default();
-            return Err(dynamics.wrong("damping", value, "but must not be negative"));
-        }
-        if dynamics.number("friction")?.is_some_and(|friction| friction != 0.0) {
-            context.warnings.add(dynamics.place(), "dynamics `friction`", "a joint's friction is not described");
+        for (name, number) in [("damping", &mut made.damping), ("friction", &mut made.friction)] {
+            *number = dynamics.number(name)?.unwrap_or(0.0);
+            if *number < 0.0 {
+                let value = dynamics.attribute(name).unwrap_or_default();
+                return Err(dynamics.wrong(name, value, "but must not be negative"));
+            }
         }
     }
     Ok(made)
+}
+
+/// Returns the largest speed of a joint. A speed of 0 and the writer's number for a free joint are no limits.
+fn largest_speed(limit: Element<'_>) -> Result<Option<f64>, ReadError> {
+    let speed = limit.list("velocity", 1, 1)?.map_or(0.0, |list| list[0]);
+    if speed < 0.0 {
+        let text = limit.attribute("velocity").unwrap_or_default();
+        return Err(limit.wrong("velocity", text, "but must not be negative"));
+    }
+    Ok(Some(speed).filter(|speed| *speed > 0.0 && *speed < MAX_SPEED))
 }
 
 /// A motor for a joint that has a largest effort.

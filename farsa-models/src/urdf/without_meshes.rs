@@ -20,7 +20,7 @@ pub(crate) fn without_meshes(root: Element<'_>, context: &mut Context<'_>) -> Re
         }
         let placement = origin(collision, context)?;
         let Some(solid) = solid(geometry, context)? else { continue };
-        let (shape, inner, _) = solid.shape();
+        let (shape, inner, _) = solid.shape(context.options);
         let mut out = Lines::default();
         shapes(
             &mut out,

@@ -17,8 +17,8 @@ use crate::xml::write::{
 /// Name of the link that represents the world.
 const WORLD: &str = "world";
 
-/// URDF requires a largest speed, which a description does not have [rad/s or m/s].
-const MAX_SPEED: f64 = 1000.0;
+/// URDF requires a largest speed. Joints without one have this [rad/s or m/s].
+pub(super) const MAX_SPEED: f64 = 1000.0;
 
 /// Half the edge length of the block that represents a plane [m].
 const PLANE: f64 = 50.0;
@@ -33,8 +33,8 @@ const PLANE: f64 = 50.0;
 /// well. Since URDF has no friction on the ground, it becomes friction of each sliding joint by itself. A comment in
 /// the file mentions this.
 ///
-/// Note that armatures, pairs and surfaces are lost. Actuators only keep their largest effort, which for a muscle pair is
-/// moment arm times largest active tension. URDF also requires a maximum speed, which is always 1000.
+/// Note that armatures, springs, pairs and surfaces are lost. Actuators only keep their largest effort, which for a
+/// muscle pair is moment arm times largest active tension. URDF also requires a maximum speed, which is always 1000.
 ///
 /// # Errors
 /// Returns the errors of [`Robot::validate`], and [`RobotError::Value`] for a shape of 1e9 m or more. No reader would
@@ -59,7 +59,12 @@ pub fn write(robot: &Robot) -> Result<String, RobotError> {
     let (efforts, losses) = (efforts(robot), friction_of_ground(robot));
     for (i, segment) in robot.segments.iter().enumerate() {
         let parent = segment.parent.map_or(WORLD, |parent| names[parent.index()].as_str());
-        joint(&mut out, &segment.joint, [&joints[i], parent, &names[i]], [efforts[i], losses[i]]);
+        joint(
+            &mut out,
+            &segment.joint,
+            [&joints[i], parent, &names[i]],
+            [efforts[i], losses[i] + segment.joint.friction],
+        );
     }
     out.close("robot");
     Ok(out.text)
@@ -131,7 +136,8 @@ fn joint(out: &mut Lines, joint: &Joint, [name, parent, child]: [&str; 3], [effo
             let [low, high] = range_in_file(joint.range);
             format!("lower=\"{:?}\" upper=\"{:?}\" ", low + 0.0, high + 0.0)
         };
-        out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{MAX_SPEED:?}\"/>"));
+        let speed = joint.speed_limit.unwrap_or(MAX_SPEED);
+        out.line(&format!("<limit {range}effort=\"{effort:?}\" velocity=\"{speed:?}\"/>"));
         out.line(&format!("<dynamics damping=\"{:?}\" friction=\"{friction:?}\"/>", joint.damping));
     }
     out.close("joint");
@@ -167,14 +173,15 @@ pub(super) fn shapes(out: &mut Lines, shape: &Visual, name: Option<&str>, kind: 
         out.close(kind);
     };
     let ball = |radius: f64| format!("<sphere radius=\"{radius:?}\"/>");
+    let tube = |radius: f64, half: f64| format!("<cylinder radius=\"{radius:?}\" length=\"{:?}\"/>", 2.0 * half);
     let block = |half: [f64; 3]| format!("<box size=\"{}\"/>", numbers(&half.map(|x| 2.0 * x)));
     match shape.shape {
         Shape::Sphere { radius } => element("", 0.0, &ball(radius)),
         Shape::Box { half } => element("", 0.0, &block(half)),
         Shape::Plane => element("", -PLANE, &block([PLANE; 3])),
+        Shape::Cylinder { radius, half_length } => element("", 0.0, &tube(radius, half_length)),
         Shape::Capsule { radius, half_length } => {
-            let tube = format!("<cylinder radius=\"{radius:?}\" length=\"{:?}\"/>", 2.0 * half_length);
-            element("", 0.0, &tube);
+            element("", 0.0, &tube(radius, half_length));
             element("_start", -half_length, &ball(radius));
             element("_end", half_length, &ball(radius));
         }
@@ -234,9 +241,8 @@ mod tests {
         assert_eq!((text.matches("<visual ").count(), text.matches(piece).count()), (2, 1), "{text}");
         assert_eq!((text.matches("friction=\"1.5\"").count(), text.matches("friction=\"0.03\"").count()), (2, 1));
         let read = crate::Imported::from_text(&text, &crate::ReadOptions::default()).expect("a valid file");
-        let losses = read.warnings.iter().filter(|warning| warning.what.contains("friction"));
-        let losses: usize = losses.map(|warning| warning.count).sum();
-        assert_eq!(losses, 3, "{:?}", read.warnings);
+        let friction = read.robot.segments.iter().map(|segment| segment.joint.friction);
+        assert_eq!(friction.collect::<Vec<_>>(), [1.5, 1.5, 0.03]);
     }
 
     #[test]

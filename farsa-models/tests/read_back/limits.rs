@@ -3,6 +3,7 @@
 use farsa_body::Pose;
 use farsa_body::actuators::{Held, Law, Servo, Torque, Velocity};
 use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
+use farsa_models::ReadOptions;
 use farsa_models::mjcf::{self, MjcfOptions};
 
 use crate::{message, read};
@@ -69,6 +70,34 @@ fn ranges_of_actuators_follow_the_same_rules() {
 }
 
 #[test]
+fn ranges_of_control_are_ranges_of_commands() {
+    for (actuator, range) in [
+        ("<position joint='j' kp='8' ctrlrange='-1 0.5'/>", Some([-1.0, 0.5])),
+        ("<position joint='j' kp='8' gear='2' ctrlrange='-1 0.5'/>", Some([-0.5, 0.25])),
+        ("<position joint='j' kp='8' gear='-2' ctrlrange='-1 0.5'/>", Some([-0.25, 0.5])),
+        ("<position joint='j' kp='8' ctrlrange='-1 0.5' ctrllimited='false'/>", None),
+        ("<position joint='j' kp='8' inheritrange='1'/>", Some([-2.0, 2.0])),
+        ("<position joint='j' kp='8' gear='4' inheritrange='0.5'/>", Some([-0.25, 0.25])),
+        ("<position joint='j' kp='8' inheritrange='1' ctrllimited='false'/>", None),
+        ("<position joint='j' kp='8' inheritrange='-1'/>", None),
+        ("<velocity joint='j' kv='4' gear='2' ctrlrange='0 3'/>", Some([0.0, 1.5])),
+        ("<general joint='j' gainprm='4' ctrlrange='0 3' biastype='affine' biasprm='0 0 -2'/>", Some([0.0, 12.0])),
+        ("<motor joint='j' gear='-3' ctrlrange='-1 2'/>", Some([-6.0, 3.0])),
+        ("<motor joint='j' gear='3' ctrlrange='-2 2'/>", None),
+    ] {
+        let robot = read(&text("", actuator, true)).unwrap().robot;
+        assert_eq!(robot.actuators[0].command_range, range, "{actuator}");
+        let back = read(&mjcf::write(&robot, &MjcfOptions::default()).unwrap()).unwrap().robot;
+        assert_eq!(back.actuators, robot.actuators, "{actuator}");
+        let unlimited = "<mujoco><option><flag clampctrl='disable'/></option>";
+        let text = text("", actuator, true).replace("<mujoco>", unlimited);
+        assert_eq!(read(&text).unwrap().robot.actuators[0].command_range, None, "{actuator}");
+    }
+    let twice = text("", "<position joint='j' inheritrange='1' ctrlrange='-1 1'/>", true);
+    assert!(message(&twice).ends_with("ctrlrange is \"-1 1\", but there is `inheritrange` already"));
+}
+
+#[test]
 fn the_effort_of_a_joint_limits_its_actuators() {
     let actuators = "<motor joint='j' gear='3' ctrlrange='-2 2'/><motor joint='j'/><position joint='j' kp='9'/>\
                      <velocity joint='j' forcerange='-1 1'/>";
@@ -96,6 +125,39 @@ fn the_effort_of_a_joint_limits_its_actuators() {
     assert!(read.warnings.iter().any(|warning| warning.to_string() == note), "{:?}", read.warnings);
 }
 
+#[test]
+fn largest_speeds_of_a_urdf_are_read_on_demand() {
+    let with = |limit: &str, joint_speeds: bool| {
+        let text = format!(
+            "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' \
+             ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j' type='continuous'><parent link='a'/><child link='b'/>\
+             <limit effort='1' {limit}/></joint></robot>"
+        );
+        farsa_models::Imported::from_text(&text, &ReadOptions { joint_speeds, ..ReadOptions::default() })
+    };
+    for (limit, speed) in [
+        ("velocity='2.5'", Some(2.5)),
+        ("velocity='0'", None),
+        ("", None),
+        ("velocity='1000'", None),
+        ("velocity='inf'", None),
+    ] {
+        let read = with(limit, true).unwrap();
+        let joint = &read.robot.segments[1].joint;
+        assert_eq!(joint.speed_limit, speed, "{limit}");
+        assert!(read.warnings.is_empty(), "{limit}: {:?}", read.warnings);
+        let written = farsa_models::urdf::write(&read.robot).unwrap();
+        let options = ReadOptions { joint_speeds: true, ..ReadOptions::default() };
+        let back = farsa_models::Imported::from_text(&written, &options).unwrap();
+        assert_eq!(back.robot.segments[1].joint.speed_limit, speed, "{limit}");
+        let ignored = with(limit, false).unwrap();
+        assert_eq!(ignored.robot.segments[1].joint.speed_limit, None, "{limit}");
+        assert_eq!(ignored.warnings.len(), usize::from(!limit.is_empty()), "{limit}: {:?}", ignored.warnings);
+    }
+    let error = with("velocity='-1'", true).unwrap_err().to_string();
+    assert!(error.ends_with("velocity is \"-1\", but must not be negative"), "{error}");
+}
+
 /// A robot with limits that MuJoCo has no words for.
 fn locked() -> Robot {
     let mut robot = Robot::new("locked");
@@ -110,7 +172,9 @@ fn locked() -> Robot {
             (Law::Velocity(Velocity { gain: 2.0, limit: NONE }), 3),
             (Law::Held(Held { stiffness: 0.0, damping: 0.25 }), 4),
         ] {
-            robot.add_actuator(&format!("{name}{number}"), joint, law);
+            let added = robot.add_actuator(&format!("{name}{number}"), joint, law);
+            let ranges = [None, Some([0.25, 0.25]), Some([-NONE, 2.0]), Some([0.0, 0.0]), Some([-1e12, -1e12])];
+            robot.actuators[added.index()].command_range = ranges[number];
         }
     }
     robot
@@ -125,10 +189,15 @@ fn every_law_and_lock_is_read_back() {
         let ends: Vec<f64> = range.split('"').next().unwrap().split(' ').map(|end| end.parse().unwrap()).collect();
         assert!(ends[0] < ends[1] && ends.iter().all(|end| *end == 0.0 || end.is_normal()), "{ends:?}");
     }
-    assert!(text.contains("<velocity name=\"a3\" joint=\"a\" kv=\"2.0\"/>"), "{text}");
-    assert!(text.contains("gainprm=\"1.0\" biastype=\"affine\" biasprm=\"0.0 0.0 -0.25\"/>"), "{text}");
+    assert!(text.contains("gainprm=\"1.0\" biastype=\"affine\" biasprm=\"0.0 0.0 -0.25\" ctrl"), "{text}");
     let back = read(&text).unwrap().robot;
-    assert_eq!(back.actuators, robot.actuators);
+    let mut actuators = robot.actuators.clone();
+    // Numbers from 1e9 are endless in files.
+    for actuator in actuators.iter_mut().filter(|actuator| actuator.name.ends_with('4')) {
+        actuator.command_range = back.actuators[4].command_range;
+    }
+    assert_eq!(back.actuators, actuators);
+    assert!(back.actuators[4].command_range.unwrap()[1] < -9e11);
     let ranges = |robot: &Robot| robot.segments.iter().map(|segment| segment.joint.range).collect::<Vec<_>>();
     let [.., high] = ranges(&back)[2];
     assert!(high < -9e11, "{high}");

@@ -67,16 +67,7 @@ fn attributes_and_elements_without_effect_are_listed() {
         ("actuator/motor", "kp='2'", "motor `kp`: has no effect here"),
         ("body/joint", "type='free' axis='1 0 0'", "joint `axis`: has no effect here"),
         ("body/geom", "fitscale='2'", "geom `fitscale`: has no effect here"),
-        (
-            "actuator/position",
-            "ctrlrange='-1 1'",
-            "actuator position `ctrlrange`: the range of commands is the caller's",
-        ),
-        (
-            "actuator/velocity",
-            "ctrlrange='-1 1'",
-            "actuator velocity `ctrlrange`: the range of commands is the caller's",
-        ),
+        ("actuator/position", "inheritrange='1'", "actuator position `inheritrange`: the joint has no range"),
     ] {
         let text = model(path, attribute);
         let found = notes(&text);
@@ -118,7 +109,7 @@ fn free_joints_list_what_they_cannot_have() {
 fn a_pair_that_is_declared_twice_has_the_springs_of_both() {
     let text = |pairs: &str| {
         format!(
-            "<mujoco><worldbody><body pos='0 0 1'><freejoint/><geom name='g' size='0.1'/></body>\
+            "<mujoco><option cone='elliptic'/><worldbody><body pos='0 0 1'><freejoint/><geom name='g' size='0.1'/></body>\
              <body pos='0 0 2'><freejoint/><geom name='h' size='0.1'/></body></worldbody>\n<contact>{pairs}</contact></mujoco>"
         )
     };

@@ -3,6 +3,8 @@
 
 /// Bounds of masses.
 mod bounds;
+/// Contacts of MuJoCo.
+mod contacts;
 /// MuJoCo's classes of defaults.
 mod defaults;
 /// Meshes that views draw.
@@ -16,6 +18,7 @@ mod hostile;
 /// The iCub, written and read.
 mod icub;
 /// Models as large as the limits.
+mod keyframes;
 mod large;
 /// Limits of joints and actuators.
 mod limits;

@@ -44,6 +44,8 @@ impl Named {
     /// Without what an MJCF does not have: names of fixed joints, laws that are not MuJoCo's.
     fn of_mjcf(mut self) -> Self {
         for (_, joint, _) in self.segments.values_mut() {
+            // Every limit of MuJoCo has numbers, from which a stop is computed again.
+            joint.stop = None;
             if !joint.kind.is_single() {
                 *joint = Joint { name: String::new(), kind: joint.kind, ..Joint::fixed(joint.placement) };
             }
@@ -56,7 +58,7 @@ impl Named {
         self
     }
 
-    /// Without what a URDF does not have: pairs, armatures, laws, the length of axes, planes.
+    /// Without what a URDF does not have: pairs, armatures, springs, laws, the length of axes, planes.
     fn of_urdf(mut self) -> Self {
         self.pairs.clear();
         let mut efforts: BTreeMap<String, f64> = BTreeMap::new();
@@ -72,7 +74,7 @@ impl Named {
         let motor = |effort| Law::Torque(Torque { limit: limit(effort) });
         self.actuators = efforts.into_iter().map(|(joint, effort)| (joint.clone(), (joint, motor(effort)))).collect();
         for (_, joint, _) in self.segments.values_mut() {
-            joint.armature = 0.0;
+            (joint.armature, joint.stiffness, joint.rest, joint.stop) = (0.0, 0.0, 0.0, None);
             let length = joint.axis.iter().map(|x| x * x).sum::<f64>().sqrt();
             joint.axis = joint.axis.map(|x| x / length);
             if !joint.kind.is_single() {
@@ -88,7 +90,20 @@ impl Named {
         self
     }
 
-    /// Returns the but for angles and directions, which a URDF has as other numbers: those of `other` where they are
+    /// Returns it with the inertias of `other` where they are close, because flat and least inertias are written as principal
+    /// moments.
+    fn weighed_as(mut self, other: &Self) -> Self {
+        for (name, (_, _, mass)) in &mut self.segments {
+            let Some((_, _, theirs)) = other.segments.get(name) else { continue };
+            let largest = theirs.inertia.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+            if mass.inertia.iter().zip(theirs.inertia).all(|(a, b)| (a - b).abs() <= 1e-12 * largest) {
+                mass.inertia = theirs.inertia;
+            }
+        }
+        self
+    }
+
+    /// Returns it but for angles and directions, which a URDF has as other numbers: those of `other` where they are
     /// close.
     fn turned_as(mut self, other: &Self) -> Self {
         let same = |a: &mut Pose<f64>, b: &Pose<f64>| {
@@ -114,7 +129,7 @@ impl Named {
 
 /// Writes and reads a robot through both formats, and returns the first difference.
 pub(crate) fn lost(robot: &Robot) -> Result<(), String> {
-    let told = |kind: &str, text: &str| {
+    let read_again = |kind: &str, text: &str| {
         let back = read(text).map_err(|error| format!("{kind}: {error}\n{text}"))?.robot;
         if back.name == robot.name { Ok(Named::new(&back)) } else { Err(format!("{kind}: called {}", back.name)) }
     };
@@ -122,10 +137,11 @@ pub(crate) fn lost(robot: &Robot) -> Result<(), String> {
         if found == expected { Ok(()) } else { Err(format!("{kind}: {found:#?}\ninstead of {expected:#?}")) }
     };
     let text = mjcf::write(robot, &MjcfOptions::default()).map_err(|error| error.to_string())?;
-    compared("MJCF", &told("MJCF", &text)?.of_mjcf(), &Named::new(robot).of_mjcf())?;
+    let expected = Named::new(robot).of_mjcf();
+    compared("MJCF", &read_again("MJCF", &text)?.of_mjcf().weighed_as(&expected), &expected)?;
     let text = urdf::write(robot).map_err(|error| error.to_string())?;
     let expected = Named::new(robot).of_urdf();
-    compared("URDF", &told("URDF", &text)?.of_urdf().turned_as(&expected), &expected)
+    compared("URDF", &read_again("URDF", &text)?.of_urdf().turned_as(&expected), &expected)
 }
 
 /// A number of any sign whose power of ten is in this range.
@@ -217,10 +233,11 @@ fn as_urdf(parts: &[Part]) -> String {
             "<link name='l{i}'><inertial><mass value='{mass:?}'/><inertia {moments}/></inertial>\
              <collision>{origin}<geometry>{shape}</geometry></collision></link>\
              <joint name='j{i}' type='{kind}'>{origin}<parent link='{parent}'/><child link='l{i}'/><axis xyz='{}'/>\
-             <limit lower='{low:?}' upper='{high:?}' effort='{:?}'/><dynamics damping='{:?}'/></joint>",
+             <limit lower='{low:?}' upper='{high:?}' effort='{:?}'/><dynamics damping='{:?}' friction='{:?}'/></joint>",
             list(&part.axis),
             part.joint[2],
-            part.joint[0]
+            part.joint[0],
+            part.joint[3]
         );
     }
     text + "</robot>"
@@ -236,9 +253,11 @@ fn as_mjcf(parts: &[Part]) -> String {
         let kind = ["sphere", "box", "capsule", "cylinder", "ellipsoid"][usize::from(part.kinds[1] % 5)];
         let [damping, armature, effort, friction, time, impedance] = part.joint;
         let joint = format!(
-            "axis='{}' range='{}' damping='{damping:?}' armature='{armature:?}'",
+            "axis='{}' range='{}' damping='{damping:?}' armature='{armature:?}' frictionloss='{friction:?}' stiffness='{effort:?}' \
+             springref='{:?}'",
             list(&part.axis),
-            list(&part.range)
+            list(&part.range),
+            part.at[0]
         );
         let (place, [mass, moment]) = (format!("pos='{}' euler='{}'", list(&part.at), list(&part.angles)), part.body);
         // A chain, or bodies in the world, which alone may float.
