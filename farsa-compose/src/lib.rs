@@ -7,6 +7,7 @@ mod built_in;
 mod check;
 mod composed_task;
 pub mod document;
+mod ends;
 mod experiment;
 mod files;
 mod formula;

@@ -6,7 +6,7 @@ use farsa_body::Pose;
 use farsa_num::Stream;
 use farsa_physics::arena::{Lane, World};
 
-use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
+use crate::part::object::{PlanarEnd, PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
 use crate::part::{Moment, Spot};
 
 /// A world of robots in a plane, in which registered parts work.
@@ -21,6 +21,8 @@ pub(crate) trait ArenaWorld: PlanarWorld {
     fn step_term(&self, term: &mut dyn PlanarTerm, now: &Moment<'_>);
     /// Computes a registered term.
     fn value(&self, term: &dyn PlanarTerm, now: &Moment<'_>) -> f64;
+    /// Asks a registered end.
+    fn ends(&self, end: &dyn PlanarEnd, now: &Moment<'_>, success: bool) -> bool;
     /// Draws a pose by a registered placement.
     fn draw(&self, start: &dyn PlanarStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose>;
 }
@@ -42,6 +44,9 @@ macro_rules! arena_world {
             }
             fn value(&self, term: &dyn PlanarTerm, now: &Moment<'_>) -> f64 {
                 term.value(self, now)
+            }
+            fn ends(&self, end: &dyn PlanarEnd, now: &Moment<'_>, success: bool) -> bool {
+                end.ends(self, now, success)
             }
             fn draw(&self, start: &dyn PlanarStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose> {
                 start.pose(self, spot, stream)

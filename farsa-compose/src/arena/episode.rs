@@ -1,7 +1,7 @@
 //! An episode of robots in an arena.
 
 use crate::arena::ArenaWorld;
-use farsa_body::ports::{BodyId, PairId};
+use farsa_body::ports::BodyId;
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
 use farsa_lab::advanced::seconds;
@@ -17,7 +17,7 @@ use crate::arena::setup::Setup;
 use crate::arena::term::Term;
 use crate::check::source::Source;
 use crate::composed_task::Body;
-use crate::document::{Document, Ending};
+use crate::document::Document;
 use crate::part::moment::Stock;
 use crate::part::{Moment, PartScene};
 use crate::parts::agents::Agents;
@@ -130,21 +130,14 @@ impl ArenaEpisode {
     /// Returns true after an event that ends the trial early.
     #[inline(always)]
     fn has_event<W: ArenaWorld>(&self, world: &W) -> bool {
-        self.agents.document.episode.ends.iter().any(|ending| match ending {
-            Ending::Collision => self.setup.members.iter().any(|member| world.touches(PairId(member.parts.body.0))),
-            Ending::Success | Ending::Death => self.has_rare_event(*ending),
-        })
-    }
-
-    /// Separate, because the compiler would load its inputs in each step of a trial that ends by collision.
-    #[inline(never)]
-    fn has_rare_event(&self, ending: Ending) -> bool {
-        let (foraging, present) = (&self.setup.foraging, self.agents.present);
-        match ending {
-            Ending::Success => self.agents.ledger.would_succeed(),
-            Ending::Death => foraging.as_ref().is_some_and(|(_, field)| field.deaths() == present),
-            Ending::Collision => false,
+        let Self { setup: Setup { ends, ends_with_success, foraging, .. }, agents, poses, .. } = self;
+        if ends.is_empty() {
+            return false;
         }
+        let Agents { document, spec, ledger, x, y, present, .. } = agents;
+        let now = moment(document, spec, ledger.steps, [x, y], foraging.as_ref(), &poses[..*present]);
+        let success = *ends_with_success && ledger.would_succeed();
+        ends.iter().any(|end| world.ends(&**end, &now, success))
     }
 
     /// Reads all sensors before any motor acts. Dead robots do neither.

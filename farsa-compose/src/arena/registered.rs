@@ -7,18 +7,19 @@ use farsa_body::ports::{ActuatorId, BodyId, Channels, JointId, Motor, PairId, Se
 use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
+use serde_json::Map;
 
 use crate::arena::ArenaWorld;
 use crate::arena::field::Forager;
 use crate::arena::scene::{Scene, Thing, flat, one_body, within_walls};
 use crate::check::completed::{builder, channels_of};
 use crate::check::source::Source;
-use crate::document::{MotorKind, Placing, RewardKind, SensorKind};
+use crate::document::{Ending, MotorKind, Placing, RewardKind, SensorKind};
 use crate::part::PartScene;
 use crate::part::definition::Build;
 use crate::part::files::Files;
 use crate::part::named_point::NamedPoint;
-use crate::part::object::{PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
+use crate::part::object::{PlanarEnd, PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm};
 use crate::part::scene::{Area, JointAbout, Surroundings, WITH_JOINTS};
 use crate::part::wiring::Wiring;
 use crate::parts::rule_of::RuleOf;
@@ -161,6 +162,10 @@ impl Surroundings for PartOfPlanar<'_> {
             return Ok(vec![PairId(self.scene.parts(self.robot).body.0)]);
         }
         Err(self.error("names contacts of a robot on wheels, which has one pair for all".into()))
+    }
+
+    fn collisions(&self) -> Vec<PairId> {
+        self.robots().into_iter().map(|body| PairId(body.0)).collect()
     }
 
     fn mobile_robot(&self) -> Option<&MobileRobot> {
@@ -309,7 +314,7 @@ impl Surroundings for PartOfPlanar<'_> {
 
     fn joint(&self, names: &[String], channel: usize, _: &dyn Fn(JointId) -> bool) -> JointAbout {
         let name = names.get(channel).map_or(WHEELS[channel % 2], String::as_str).replace('-', " ");
-        JointAbout { name, range: [0.0, 1.0], units: ["rad", "rad/s", "N m"], torque: None }
+        JointAbout { name, id: None, range: [0.0, 1.0], units: ["rad", "rad/s", "N m"], torque: None }
     }
 
     fn fitting(&self, names: &[String], _: &dyn Fn(JointId) -> bool) -> Result<Vec<JointId>, Error> {
@@ -318,6 +323,10 @@ impl Surroundings for PartOfPlanar<'_> {
 
     fn wiring(&self) -> Wiring {
         Wiring::default()
+    }
+
+    fn position_in(&self, _: &str, _: JointId) -> Result<f64, Error> {
+        Err(self.error(WITH_JOINTS.into()))
     }
 
     fn open_wiring(&self) -> Option<&RefCell<Wiring>> {
@@ -390,4 +399,14 @@ pub(crate) fn start(given: &Placing, scene: PartOfPlanar<'_>) -> Result<Box<dyn 
     });
     let build = build?;
     build(keys, &PartScene::new(&scene)).map_err(|error| source.at(path, error))
+}
+
+/// Builds a registered end in a scene.
+pub(crate) fn end(ending: &Ending, scene: PartOfPlanar<'_>) -> Result<Box<dyn PlanarEnd>, Error> {
+    let (path, source) = (scene.path, scene.source);
+    let build = builder((&ending.0, path, source), WITH_JOINTS, |build| match build {
+        Build::End((build, _), _) => Some(*build),
+        _ => None,
+    });
+    build?(&Map::new(), &PartScene::new(&scene)).map_err(|error| source.at(path, error))
 }

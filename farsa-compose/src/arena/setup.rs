@@ -11,10 +11,11 @@ use crate::arena::scene::{Scene, Thing};
 use crate::arena::starting::Starting;
 use crate::arena::term::Term;
 use crate::check::source::Source;
-use crate::document::{Document, Ending, Reward, TestProtocol};
+use crate::document::{Document, Reward, TestProtocol};
 use crate::formula::compile::Quantity;
 use crate::part::Area;
 use crate::part::files::Files;
+use crate::part::object::PlanarEnd;
 use crate::parts::agents::Agents;
 use crate::parts::conditions::FormulaConditions;
 use crate::parts::equipment::Equipment;
@@ -35,6 +36,9 @@ pub(crate) struct Setup {
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
+    pub(crate) ends: Vec<Box<dyn PlanarEnd>>,
+    /// True if one of them depends on success.
+    pub(crate) ends_with_success: bool,
 }
 
 /// Sensors and motors of a robot.
@@ -102,10 +106,17 @@ impl Setup {
             Ledger::new(&document, &of_steps, (conditions, &abouts), &scene.groups, source)?
         };
         let foraging = foraging(&document, &scene, source)?;
+        let ends = document.episode.ends.iter().enumerate().map(|(number, ending)| {
+            let path = &format!("/episode/ends/{number}");
+            let scene = PartOfPlanar { scene: &scene, robot: 0, files: None, rule: None, sensors: &[], path, source };
+            registered::end(ending, scene)
+        });
+        let ends = ends.collect::<Result<_, _>>()?;
+        let ends_with_success = source.registry.ends_with_success(&document);
         let starting = Starting::new(&document, &scene, source)?;
         let trainee = Trainee::new(&document, &spec, source)?;
         let agents = Agents { trainee, ..Agents::new(document, spec, ledger, scene.groups.clone(), &source.registry) };
-        Ok((Self { scene, members, foraging, starting, terms }, agents))
+        Ok((Self { scene, members, foraging, starting, terms, ends, ends_with_success }, agents))
     }
 }
 
@@ -127,13 +138,7 @@ fn alike(members: &[Member], scene: &Scene, document: &Document, source: &Source
 
 /// Builds the nest and the field of a document.
 fn foraging(document: &Document, scene: &Scene, source: &Source) -> Result<Option<(BodyId, Field)>, Error> {
-    let Some(foraging) = &document.foraging else {
-        let ending = document.episode.ends.contains(&Ending::Death).then_some("/episode/ends");
-        return match ending {
-            Some(path) => Err(source.wrong(path, "needs the section `foraging`, which there is not")),
-            None => Ok(None),
-        };
-    };
+    let Some(foraging) = &document.foraging else { return Ok(None) };
     let path = "/foraging/nest";
     match scene.thing(&foraging.nest, path, source)? {
         Thing::Area(Area { body, half: [radius, _], disc: true }) => {

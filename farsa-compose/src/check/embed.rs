@@ -27,7 +27,7 @@ const MODEL: &str = "/robot/file";
 /// All of its files are in the experiment's folder or below it, and so are its packages.
 fn merged(target: &Path, root: &Path) -> Result<(String, Option<String>), String> {
     let options = ReadOptions { root: Some(root.into()), packages: vec![root.into()], ..model_options() };
-    let text = farsa_models::self_contained(target, &options).map_err(|error| error.to_string())?;
+    let text = farsa_models::self_contained(target, &options).map_err(|error| error.to_string())?.text;
     if text.len() as u64 > MAX_BYTES {
         return Err(format!("has {} bytes with its included files, more than {MAX_BYTES}", text.len()));
     }

@@ -7,7 +7,7 @@ use farsa_lab::advanced::Part;
 use serde_json::{Value, json};
 
 use crate::check::schema::{SCHEMA, admit_bare_formulas, close, scene_schema};
-use crate::document::{MotorKind, NetworkKind, Placing, RewardKind, RobotKind, SensorKind};
+use crate::document::{Document, Ending, MotorKind, NetworkKind, Placing, RewardKind, RobotKind, SensorKind};
 use crate::name::is_name;
 use crate::part::definition::{Build, Definition, Maker};
 use crate::part::motor::AnyMotor;
@@ -31,6 +31,7 @@ fn place(build: &Build) -> (&'static str, &'static str, &'static str) {
         Build::Motor(..) => ("Motor", "kind", "motor"),
         Build::Term(..) => ("Reward", "kind", "term"),
         Build::Start(..) => ("Start", "at", "placement"),
+        Build::End(..) => ("Ending", "", "end"),
         Build::Wrapper(_) => ("Wrapper", "kind", "wrapper"),
         Build::Network(_) => ("Network", "kind", "network"),
         Build::Thing(_) => ("Object", "kind", "thing"),
@@ -62,7 +63,7 @@ impl Registry {
                 return Err(wrong("has no valid name: 1 to 40 lower-case letters, digits, - and _"));
             }
             if tag.is_empty() {
-                add_word(&mut schema, definition).map_err(wrong)?;
+                add_word(&mut schema, definition, kinds).map_err(wrong)?;
             } else {
                 add_branch(&mut schema, definition, [kinds, tag]).map_err(|why| wrong(&why))?;
             }
@@ -114,15 +115,27 @@ impl Registry {
         read?(&start.keys).ok()
     }
 
+    /// Returns true if an end of the document depends on success.
+    pub(crate) fn ends_with_success(&self, document: &Document) -> bool {
+        let asks = |build: &Build| if let Build::End(_, asks) = build { Some(*asks) } else { None };
+        document.episode.ends.iter().any(|Ending(name)| self.find(name, asks) == Some(true))
+    }
+
     /// Finds where a robot comes from.
     pub(crate) fn robot(&self, kind: &RobotKind) -> Option<&Maker> {
         self.find(&kind.name, |build| if let Build::Robot(maker) = build { Some(maker) } else { None })
     }
 }
 
-/// Adds a word to the kinds of robots.
-fn add_word(schema: &mut Value, Definition { name, about, .. }: &Definition) -> Result<(), &'static str> {
-    let kinds = schema.pointer_mut("/$defs/RobotKind/oneOf").and_then(Value::as_array_mut);
+/// Adds a word to the kinds of robots or ends.
+fn add_word(schema: &mut Value, definition: &Definition, kinds: &str) -> Result<(), &'static str> {
+    let Definition { name, about, .. } = definition;
+    let own = (definition.schema)().to_value();
+    if own["properties"].as_object().is_some_and(|keys| !keys.is_empty()) {
+        return Err("has keys, for which a word has no place");
+    }
+    let about = own["description"].as_str().unwrap_or(about);
+    let kinds = schema.pointer_mut(&format!("/$defs/{kinds}/oneOf")).and_then(Value::as_array_mut);
     let kinds = kinds.ok_or("has no place in the schema")?;
     if kinds.iter().any(|kind| kind["const"] == *name) {
         return Err("has the name of another one");

@@ -1,6 +1,8 @@
 //! Start and end of a trial.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
 use crate::document::registered::Placing;
@@ -25,16 +27,19 @@ impl Default for Episode {
     }
 }
 
-/// An event that ends a trial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Ending {
-    /// A robot collides with something.
-    Collision,
-    /// All conditions of success hold.
-    Success,
-    /// All robots are dead according to `foraging`.
-    Death,
+/// Name of a registered end.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Ending(pub String);
+
+impl JsonSchema for Ending {
+    fn schema_name() -> Cow<'static, str> {
+        "Ending".into()
+    }
+
+    /// The registry adds the names.
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "description": "An event that ends a trial.", "oneOf": [] })
+    }
 }
 
 /// A placement at the start of a trial.

@@ -13,7 +13,6 @@ use farsa_view::{Channel, Schema};
 
 use crate::check::source::Source;
 use crate::composed_task::Body;
-use crate::document::Ending;
 use crate::jointed::SpatialWorld;
 use crate::jointed::registered::PartOfSpatial;
 use crate::jointed::scene::Scene;
@@ -70,6 +69,13 @@ impl JointedEpisode {
             let value = term.value(world, &moment(&self.agents, &self.markers));
             self.agents.ledger.count(number, value);
         }
+    }
+
+    /// Returns true after an event that ends the trial early.
+    fn has_event<W: SpatialWorld>(&self, world: &W) -> bool {
+        let now = moment(&self.agents, &self.markers);
+        let success = self.setup.ends_with_success && self.agents.ledger.would_succeed();
+        self.setup.ends.iter().any(|end| world.ends(&**end, &now, success))
     }
 
     /// Returns false after NaN or at impossible speeds.
@@ -208,13 +214,7 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         self.agents.ledger.count_conditions();
         // Terms may be finite in a world that is not, so the bodies are checked separately.
         self.agents.ledger.failed |= !self.is_sane(world);
-        let Agents { document, ledger, .. } = &self.agents;
-        let ends = |ending: &Ending| match ending {
-            Ending::Collision => self.setup.collisions.iter().any(|pair| world.touches(*pair)),
-            Ending::Success => ledger.would_succeed(),
-            Ending::Death => false,
-        };
-        if !ledger.is_over() && !document.episode.ends.iter().any(ends) {
+        if !self.agents.ledger.is_over() && !self.has_event(world) {
             return None;
         }
         self.measure(world, true);

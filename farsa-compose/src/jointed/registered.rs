@@ -7,17 +7,18 @@ use farsa_body::ports::{ActuatorId, BodyId, Channels, JointId, Motor, PairId, Se
 use farsa_body::robots::{MobileParts, MobileRobot};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
+use serde_json::Map;
 
 use crate::check::completed::{builder, channels_of};
 use crate::check::source::Source;
-use crate::document::{MotorKind, Placing, RewardKind, SensorKind};
+use crate::document::{Ending, MotorKind, Placing, RewardKind, SensorKind};
 use crate::jointed::SpatialWorld;
 use crate::jointed::scene::Scene;
 use crate::part::PartScene;
 use crate::part::definition::Build;
 use crate::part::files::Files;
 use crate::part::named_point::NamedPoint;
-use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
+use crate::part::object::{SpatialEnd, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
 use crate::part::scene::{Area, JointAbout, ON_WHEELS, Surroundings};
 use crate::part::wiring::Wiring;
 use crate::parts::rule_of::RuleOf;
@@ -141,6 +142,10 @@ impl Surroundings for PartOfSpatial<'_> {
 
     fn contacts(&self, bodies: &[String], with: Option<&str>) -> Result<Vec<PairId>, Error> {
         self.scene.pairs(bodies, with.map(str::to_owned).as_ref(), self.path, self.source)
+    }
+
+    fn collisions(&self) -> Vec<PairId> {
+        self.scene.collisions()
     }
 
     fn mobile_robot(&self) -> Option<&MobileRobot> {
@@ -271,6 +276,7 @@ impl Surroundings for PartOfSpatial<'_> {
         let slides = joint.is_some_and(|joint| scene.is_rail(joint));
         JointAbout {
             name: joint.map_or_else(String::new, |joint| scene.joint_name(joint).to_owned()),
+            id: joint,
             range: joint.map_or([0.0, 1.0], |joint| scene.range(joint)),
             units: if slides { ["m", "m/s", "N"] } else { ["rad", "rad/s", "N m"] },
             torque: joint.and_then(|joint| self.wiring().limit(joint)),
@@ -283,6 +289,13 @@ impl Surroundings for PartOfSpatial<'_> {
 
     fn wiring(&self) -> Wiring {
         self.wiring.map_or_else(|| Wiring::new(&self.scene.robot), |wiring| wiring.borrow().clone())
+    }
+
+    fn position_in(&self, keyframe: &str, joint: JointId) -> Result<f64, Error> {
+        let path = format!("{}/around", self.path);
+        let posture = &self.scene.postures[self.scene.posture(keyframe, &path, self.source)?];
+        let mut joints = self.scene.robot.joints().zip(&posture.joints);
+        Ok(joints.find(|(known, _)| *known == joint).map_or(0.0, |(_, position)| *position))
     }
 
     fn open_wiring(&self) -> Option<&RefCell<Wiring>> {
@@ -340,4 +353,14 @@ pub(crate) fn start(given: &Placing, scene: PartOfSpatial<'_>) -> Result<Box<dyn
     );
     let build = build?;
     build(keys, &PartScene::new(&scene)).map_err(|error| source.at(path, error))
+}
+
+/// Builds a registered end in a scene.
+pub(crate) fn end(ending: &Ending, scene: PartOfSpatial<'_>) -> Result<Box<dyn SpatialEnd>, Error> {
+    let (path, source) = (scene.path, scene.source);
+    let build = builder((&ending.0, path, source), ON_WHEELS, |build| match build {
+        Build::End((_, build), _) => Some(*build),
+        _ => None,
+    });
+    build?(&Map::new(), &PartScene::new(&scene)).map_err(|error| source.at(path, error))
 }

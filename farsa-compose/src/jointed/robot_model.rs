@@ -4,6 +4,7 @@ use farsa_body::Pose;
 use farsa_body::ports::BodyId;
 use farsa_body::robot::Robot;
 use farsa_lab::Error;
+use farsa_models::mjcf::Keyframe;
 use farsa_models::{Imported, Limits, Meshes, ReadOptions};
 use farsa_view::shape::SceneMesh;
 
@@ -18,6 +19,8 @@ pub(crate) struct RobotModel {
     pub(crate) frames: Vec<(String, Option<BodyId>, Pose<f64>)>,
     /// False if the model disables all contacts.
     pub(crate) touches: bool,
+    /// States of its file from which a trial can start. The first is the configuration of the file.
+    pub(crate) postures: Vec<Keyframe>,
     /// Meshes that pages draw.
     pub(crate) meshes: Vec<SceneMesh>,
 }
@@ -51,7 +54,8 @@ impl RobotModel {
             (_, Some(_)) => return Err(source.wrong("/robot/file", "is for the kind `model`")),
             (_, None) if *floating => return Err(source.wrong("/robot/floating", "is for the kind `model`")),
             (Some(Maker::Joints(robot)), None) => {
-                Self { robot: (**robot).clone(), frames: Vec::new(), touches: true, meshes: Vec::new() }
+                let (robot, postures) = ((**robot).clone(), Vec::new());
+                Self { robot, frames: Vec::new(), touches: true, postures, meshes: Vec::new() }
             }
             (_, None) => return Err(source.wrong("/robot/kind", "is no robot with joints")),
         };
@@ -64,7 +68,7 @@ impl RobotModel {
         // The text of a run contains no mesh, and opens no file.
         let options = ReadOptions { floating, meshes: Meshes::Leave, ..model_options() };
         let read = Imported::from_text(text, &options);
-        let Imported { robot, frames, gravity, contacts, .. } =
+        let Imported { robot, frames, gravity, contacts, keyframes, .. } =
             read.map_err(|error| source.wrong("/robot/file", format!("{name}: {error}")))?;
         check_gravity(gravity, document, source)?;
         if robot.joints().next().is_none() && robot.segments.is_empty() {
@@ -76,7 +80,7 @@ impl RobotModel {
         let meshes = meshes.map(|text| drawn_meshes::read(text, &robot)).transpose();
         let meshes =
             meshes.map_err(|why| source.wrong("/robot/file", format!("{name_of_meshes}: {why}")))?.unwrap_or_default();
-        Ok(Self { robot, frames, touches: contacts, meshes })
+        Ok(Self { robot, frames, touches: contacts, postures: keyframes, meshes })
     }
 
     /// Moves all segments that are fixed to the world.
@@ -86,6 +90,8 @@ impl RobotModel {
         // All other poses are relative to a parent and move with it.
         let roots = self.robot.segments.iter_mut().filter(|segment| segment.parent.is_none());
         roots.for_each(|segment| moved(&mut segment.joint.placement));
+        let free = self.postures.iter_mut().flat_map(|posture| &mut posture.bodies);
+        free.for_each(|(_, pose)| moved(pose));
         let standing = self.robot.colliders.iter_mut().filter(|collider| collider.body.is_none());
         standing.for_each(|collider| moved(&mut collider.placement));
         let standing = self.robot.visuals.iter_mut().filter(|visual| visual.body.is_none());

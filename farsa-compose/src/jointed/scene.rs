@@ -7,6 +7,7 @@ use farsa_body::ports::{BodyId, JointId, PairId};
 use farsa_body::robot::{Collider, Robot, Shape, Surface};
 use farsa_body::sensors::Point;
 use farsa_lab::Error;
+use farsa_models::mjcf::Keyframe;
 use farsa_num::Scalar;
 use farsa_view::shape::{Geometry, Role, SceneMesh, SceneObject};
 
@@ -24,6 +25,8 @@ pub(crate) struct Scene {
     /// Numbers of the robot's own segments and colliders.
     own: [usize; 2],
     frames: Vec<(String, Option<BodyId>, Pose<f64>)>,
+    /// States of the robot from which a trial can start.
+    pub(crate) postures: Vec<Keyframe>,
     pub(crate) things: Vec<Thing>,
     pub(crate) markers: Vec<Marker>,
     /// Drawn objects other than the robot.
@@ -43,7 +46,7 @@ const FLOOR: &str = "floor";
 impl Scene {
     /// Builds the robot of a document with its surroundings.
     pub(crate) fn new(document: &Document, source: &Source) -> Result<Self, Error> {
-        let RobotModel { mut robot, frames, touches, meshes } = RobotModel::new(document, source)?;
+        let RobotModel { mut robot, frames, touches, postures, meshes } = RobotModel::new(document, source)?;
         let shows = document.world.engine != Engine::Rapier;
         let own = [robot.segments.len(), robot.colliders.len()];
         let (mut things, mut markers, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
@@ -66,7 +69,7 @@ impl Scene {
             things.push(Thing::add(object, &mut robot, &mut markers, &mut drawn, (&path, source))?);
         }
         let meshes = meshes.into();
-        let mut scene = Self { robot, own, frames, things, markers, drawn, meshes, floor, shows };
+        let mut scene = Self { robot, own, frames, postures, things, markers, drawn, meshes, floor, shows };
         scene.pair(document, touches);
         Ok(scene)
     }
@@ -236,6 +239,16 @@ impl Scene {
             }
             (None, name) => Ok(NamedPoint::Body(self.point(name, point, path, source)?)),
         }
+    }
+
+    /// Returns the number of a posture of the robot by its name, which is empty for the configuration of the file.
+    pub(crate) fn posture(&self, name: &str, path: &str, source: &Source) -> Result<usize, Error> {
+        if self.postures.is_empty() {
+            return Err(source.wrong(path, "is for a `model`, whose file has postures"));
+        }
+        let number = self.postures.iter().position(|posture| posture.name == name);
+        let names = || self.postures.iter().skip(1).map(|posture| posture.name.as_str());
+        number.ok_or_else(|| Error::unknown(&source.of(path), "keyframe", name, names()))
     }
 
     /// Returns a named joint of the robot.

@@ -2,18 +2,19 @@
 
 use std::cell::RefCell;
 
-use farsa_body::ports::{BodyId, JointId, PairId};
+use farsa_body::ports::{BodyId, JointId};
 use farsa_body::robot::JointKind;
 use farsa_lab::Error;
 use farsa_physics::articulated::Options;
 
 use crate::check::source::Source;
-use crate::document::{Document, Ending, Engine};
+use crate::document::{Document, Engine};
 use crate::formula::compile::Quantity;
 use crate::jointed::registered::{self, PartOfSpatial, RegisteredMotor, RegisteredSensor};
 use crate::jointed::scene::{ROBOT, Scene};
 use crate::jointed::starting::Starting;
 use crate::jointed::term::Term;
+use crate::part::object::SpatialEnd;
 use crate::part::wiring::Wiring;
 use crate::parts::agents::Agents;
 use crate::parts::conditions::FormulaConditions;
@@ -33,8 +34,9 @@ pub(crate) struct Setup {
     pub(crate) starting: Starting,
     /// Measures of the terms.
     pub(crate) terms: Vec<Term>,
-    /// Contact pairs between the robot and things.
-    pub(crate) collisions: Vec<PairId>,
+    pub(crate) ends: Vec<Box<dyn SpatialEnd>>,
+    /// True if one of them depends on success.
+    pub(crate) ends_with_success: bool,
     /// All joints and floating bodies, whose speeds show a failure of the dynamics.
     pub(crate) joints: Vec<JointId>,
     pub(crate) floating: Vec<BodyId>,
@@ -84,10 +86,16 @@ impl Setup {
         let segments = scene.robot.segments.iter().enumerate();
         let floating = segments.filter(|(_, segment)| segment.joint.kind == JointKind::Floating);
         let floating = floating.map(|(number, _)| BodyId(number as u16)).collect();
-        let (joints, collisions) = (scene.robot.joints().collect(), scene.collisions());
+        let ends = document.episode.ends.iter().enumerate().map(|(number, ending)| {
+            let path = &format!("/episode/ends/{number}");
+            let scene = PartOfSpatial { scene: &scene, wiring: None, rule: None, sensors: &[], path, source };
+            registered::end(ending, scene)
+        });
+        let ends_with_success = source.registry.ends_with_success(&document);
+        let (joints, ends) = (scene.robot.joints().collect(), ends.collect::<Result<_, _>>()?);
         let trainee = Trainee::new(&document, &spec, source)?;
         let agents = Agents { trainee, ..Agents::new(document, spec, ledger, groups, &source.registry) };
-        Ok((Self { scene, equipment, starting, terms, collisions, joints, floating }, agents))
+        Ok((Self { scene, equipment, starting, terms, ends, ends_with_success, joints, floating }, agents))
     }
 }
 
@@ -119,9 +127,6 @@ fn refuse(document: &Document, source: &Source) -> Result<(), Error> {
     }
     if document.foraging.is_some() {
         return Err(source.wrong("/foraging", why));
-    }
-    if let Some(index) = document.episode.ends.iter().position(|ending| *ending == Ending::Death) {
-        return Err(source.wrong(&format!("/episode/ends/{index}"), why));
     }
     let robot = document.reward.iter().position(|reward| reward.robot.is_some_and(|robot| robot > 1));
     if let Some(index) = robot {

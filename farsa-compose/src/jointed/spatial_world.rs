@@ -7,7 +7,7 @@ use farsa_body::ports::{
 use farsa_num::Stream;
 use farsa_physics::articulated::{Lane, World};
 
-use crate::part::object::{SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
+use crate::part::object::{SpatialEnd, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm};
 use crate::part::{Moment, Spot, Start};
 
 /// A world of bodies with joints, in space.
@@ -30,8 +30,12 @@ pub(crate) trait SpatialWorld:
     fn step_term(&self, term: &mut dyn SpatialTerm, now: &Moment<'_>);
     /// Computes a registered term.
     fn value(&self, term: &dyn SpatialTerm, now: &Moment<'_>) -> f64;
+    /// Asks a registered end.
+    fn ends(&self, end: &dyn SpatialEnd, now: &Moment<'_>, success: bool) -> bool;
     /// Draws the position of a joint by a registered placement.
     fn draw_position(&self, start: &dyn SpatialStart, stream: &mut Stream) -> Option<f32>;
+    /// Draws the position and speed of a joint around a posture by a registered placement.
+    fn draw_around(&self, start: &dyn SpatialStart, position: f32, stream: &mut Stream) -> Option<[f32; 2]>;
     /// Draws a pose by a registered placement.
     fn draw(&self, start: &dyn SpatialStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose>;
 }
@@ -54,8 +58,14 @@ macro_rules! registered_parts {
         fn value(&self, term: &dyn SpatialTerm, now: &Moment<'_>) -> f64 {
             term.value(self, now)
         }
+        fn ends(&self, end: &dyn SpatialEnd, now: &Moment<'_>, success: bool) -> bool {
+            end.ends(self, now, success)
+        }
         fn draw_position(&self, start: &dyn SpatialStart, stream: &mut Stream) -> Option<f32> {
             Start::<Self>::position(start, stream)
+        }
+        fn draw_around(&self, start: &dyn SpatialStart, position: f32, stream: &mut Stream) -> Option<[f32; 2]> {
+            Start::<Self>::around(start, position, stream)
         }
         fn draw(&self, start: &dyn SpatialStart, spot: &mut Spot<'_>, stream: &mut Stream) -> Option<Pose> {
             start.pose(self, spot, stream)

@@ -38,7 +38,7 @@ impl PartScene<'_> {
             let new = ActuatorId(wiring.actuators.len() as u16);
             let existing = wiring.find(|actuator| actuator.name == called).map(|(actuator, _)| actuator);
             if existing.is_none() {
-                wiring.actuators.push(Actuator { name: called, joint, law });
+                wiring.actuators.push(Actuator { name: called, joint, law, command_range: None });
             }
             let actuator = existing.unwrap_or(new);
             wiring.added.push((actuator, self.0.line()));

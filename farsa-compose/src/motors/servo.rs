@@ -25,6 +25,11 @@ pub(super) struct Servo {
     /// Position at 1 [rad or m], by default the highest of the joint.
     #[schemars(range(min = -1e6, max = 1e6))]
     to: Option<f64>,
+    /// Distance of both ends from the position in a posture of the model [rad or m], instead of `from` and `to`.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    within: Option<f64>,
+    /// Keyframe of the model for `within`, by default the configuration of the file.
+    around: Option<String>,
     /// Stiffness of the servo [N m/rad or N/m], by default that of the model's own servo.
     #[schemars(range(min = 1e-9, max = 1e9))]
     stiffness: Option<f64>,
@@ -37,8 +42,22 @@ pub(super) struct Servo {
 }
 
 impl Servo {
-    fn ends(&self, [low, high]: [f64; 2]) -> [f64; 2] {
-        [self.from.unwrap_or(low), self.to.unwrap_or(high)]
+    fn ends(&self, joint: JointId, scene: &PartScene<'_>) -> Result<[f64; 2], Error> {
+        let given = [self.from, self.to];
+        match self.within {
+            None if self.around.is_some() => Err(scene.error("lacks the key `within`, the distance from the posture")),
+            None => {
+                let [low, high] = scene.0.range(joint);
+                Ok([self.from.unwrap_or(low), self.to.unwrap_or(high)])
+            }
+            Some(_) if given.iter().any(Option::is_some) => {
+                Err(scene.error("has `within`, and therefore neither `from` nor `to`"))
+            }
+            Some(within) => {
+                let middle = scene.0.position_in(self.around.as_deref().unwrap_or_default(), joint)?;
+                Ok([middle - within, middle + within])
+            }
+        }
     }
 }
 
@@ -47,7 +66,7 @@ impl MotorPart for Servo {
 
     fn motor(&self, scene: &PartScene<'_>) -> Result<Self::Motor, Error> {
         let build = |joint: JointId| {
-            let [from, to] = self.ends(scene.0.range(joint)).map(|end| end as f32);
+            let [from, to] = self.ends(joint, scene)?.map(|end| end as f32);
             let servo = scene.servo(joint, [self.stiffness, self.damping, self.limit])?;
             Ok(ServoRange { servo, from, to })
         };
@@ -61,6 +80,7 @@ impl MotorPart for Servo {
         let joint = scene.driven_joint(&self.joints, channel, self.stiffness.is_some(), is_servo);
         let others = if self.together { " and all with it" } else { "" };
         let text = format!("position of {}{others}", joint.name);
-        Quantity::new(text, joint.units[0], self.ends(joint.range)).as_label()
+        let ends = joint.id.map_or(Ok(joint.range), |id| self.ends(id, scene)).unwrap_or(joint.range);
+        Quantity::new(text, joint.units[0], ends).as_label()
     }
 }

@@ -8,7 +8,7 @@ use farsa_view::Schema;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::networks::{around, single};
+use crate::networks::single;
 use crate::part::{NetworkEnds, NetworkPart, PartNetwork};
 
 /// A fully connected hidden layer of leaky integrators.
@@ -35,58 +35,50 @@ fn one() -> f64 {
     1.0
 }
 
-/// A leaky network.
-#[derive(Clone, Debug)]
-pub(crate) struct LeakyNetwork {
-    pub(crate) network: OwnedNetwork,
-}
-
-around!(LeakyNetwork, network);
-
-impl PartNetwork for LeakyNetwork {
+impl PartNetwork for OwnedNetwork {
     fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
-        self.network.copy_parameters(parameters).is_ok()
+        Self::copy_parameters(self, parameters).is_ok()
     }
 
     fn parameters(&self) -> &[f32] {
-        self.network.parameters()
+        Self::parameters(self)
     }
 
     /// Gets the activations of hidden neurons only.
     fn activations(&self) -> &[f32] {
-        self.network.hidden()
+        self.hidden()
     }
 
     fn export(&self) -> Option<NetworkExport> {
-        Some(NetworkExport::leaky(&self.network.layout(), Leak::Filter, self.parameters()))
+        Some(NetworkExport::leaky(&self.layout(), Leak::Filter, Self::parameters(self)))
     }
 
     fn memory(&self) -> usize {
-        self.network.layout().state_len()
+        self.layout().state_len()
     }
 
     fn summary(&self) -> String {
-        let [inputs, hidden, outputs] = [self.inputs(), self.network.layout().hidden(), self.outputs()];
+        let [inputs, hidden, outputs] = [self.inputs(), self.layout().hidden(), self.outputs()];
         format!("{inputs}-{hidden}-{outputs}, recurrent hidden layer, leaks as filters")
     }
 
     fn drawn(&self, schema: Schema) -> Schema {
-        schema.with_network(&self.network.layout())
+        schema.with_network(&self.layout())
     }
 }
 
 impl NetworkPart for Leaky {
-    type Network = LeakyNetwork;
+    type Network = OwnedNetwork;
 
-    fn network(&self, ends: &NetworkEnds<'_>) -> Result<LeakyNetwork, Error> {
+    fn network(&self, ends: &NetworkEnds<'_>) -> Result<OwnedNetwork, Error> {
         let [inputs, outputs] = ends.shape();
         let layout = LeakyLayout::new(inputs, self.hidden as usize, outputs).with_slope(self.slope as f32);
         ends.text.check_network(layout.parameter_count(), layout.state_len())?;
-        Ok(LeakyNetwork { network: resting_network(&layout)? })
+        resting_network(&layout)
     }
 
-    fn parameters(&self, network: &LeakyNetwork, ends: &NetworkEnds<'_>) -> Vec<Parameter> {
-        let layout = network.network.layout();
+    fn parameters(&self, network: &OwnedNetwork, ends: &NetworkEnds<'_>) -> Vec<Parameter> {
+        let layout = network.layout();
         let (hidden, outputs) = (layout.hidden().max(1), layout.outputs().max(1));
         let [weights, leaks] = [ends.weights, self.leaks].map(single);
         let of_kind = |kind: LeakyParameter| {

@@ -52,14 +52,14 @@ impl PerceptronNetwork {
     }
 }
 
-impl PartNetwork for PerceptronNetwork {
+impl PartNetwork for Perceptron<Vec<f32>> {
     fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
-        let made = Perceptron::new(self.layer.inputs(), self.layer.outputs(), 1.0, parameters.to_vec());
-        made.map(|made| self.layer = made).is_ok()
+        let made = Perceptron::new(self.inputs(), self.outputs(), self.slope(), parameters.to_vec());
+        made.map(|made| *self = made).is_ok()
     }
 
     fn parameters(&self) -> &[f32] {
-        self.layer.parameters()
+        Self::parameters(self)
     }
 
     fn activations(&self) -> &[f32] {
@@ -70,22 +70,9 @@ impl PartNetwork for PerceptronNetwork {
         Some(NetworkExport::Perceptron {
             inputs: self.inputs(),
             outputs: self.outputs(),
-            slope: self.layer.slope(),
-            parameters: self.parameters().to_vec(),
+            slope: self.slope(),
+            parameters: Self::parameters(self).to_vec(),
         })
-    }
-
-    fn load(&mut self, searched: &[f32]) -> bool {
-        if searched.len() != self.parameters().len() {
-            return false;
-        }
-        let mut all = vec![0.0; searched.len()];
-        self.order().zip(searched).for_each(|(index, value)| all[index] = *value);
-        self.copy_parameters(&all)
-    }
-
-    fn searched(&self, all: &[f64]) -> Vec<f64> {
-        self.order().filter_map(|index| all.get(index).copied()).collect()
     }
 
     fn memory(&self) -> usize {
@@ -103,6 +90,49 @@ impl PartNetwork for PerceptronNetwork {
             node_parameters: vec![NodeParameters { name: "bias".into(), nodes: [x, y], first: x * (y - x) }],
             ..schema
         }
+    }
+}
+
+impl PartNetwork for PerceptronNetwork {
+    fn copy_parameters(&mut self, parameters: &[f32]) -> bool {
+        PartNetwork::copy_parameters(&mut self.layer, parameters)
+    }
+
+    fn parameters(&self) -> &[f32] {
+        self.layer.parameters()
+    }
+
+    fn activations(&self) -> &[f32] {
+        self.layer.activations()
+    }
+
+    fn export(&self) -> Option<NetworkExport> {
+        self.layer.export()
+    }
+
+    fn load(&mut self, searched: &[f32]) -> bool {
+        if searched.len() != self.parameters().len() {
+            return false;
+        }
+        let mut all = vec![0.0; searched.len()];
+        self.order().zip(searched).for_each(|(index, value)| all[index] = *value);
+        self.copy_parameters(&all)
+    }
+
+    fn searched(&self, all: &[f64]) -> Vec<f64> {
+        self.order().filter_map(|index| all.get(index).copied()).collect()
+    }
+
+    fn memory(&self) -> usize {
+        self.layer.memory()
+    }
+
+    fn summary(&self) -> String {
+        self.layer.summary()
+    }
+
+    fn drawn(&self, schema: Schema) -> Schema {
+        self.layer.drawn(schema)
     }
 }
 

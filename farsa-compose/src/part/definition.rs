@@ -13,7 +13,8 @@ use crate::part::keys::Keys;
 use crate::part::motor::AnyMotor;
 use crate::part::network::AnyNetworkPart;
 use crate::part::object::{
-    PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
+    PlanarEnd, PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialEnd, SpatialMotor, SpatialSensor,
+    SpatialStart, SpatialTerm,
 };
 use crate::part::scene::PartScene;
 use crate::part::sensor::AnySensor;
@@ -53,6 +54,8 @@ pub(crate) enum Build {
     Motor(InWorlds<dyn PlanarMotor, dyn SpatialMotor>, Reading<dyn AnyMotor>),
     Term(InWorlds<dyn PlanarTerm, dyn SpatialTerm>, Reading<dyn AnyTerm>),
     Start(InWorlds<dyn PlanarStart, dyn SpatialStart>, Reading<dyn AnyStart>),
+    /// An end of a trial, true if it depends on success.
+    End(InWorlds<dyn PlanarEnd, dyn SpatialEnd>, bool),
     Wrapper(Reading<dyn AnyWrapper>),
     Network(Reading<dyn AnyNetworkPart>),
     Thing(Composing),

@@ -47,6 +47,8 @@
 
 /// Definitions of parts by name and kind.
 pub(crate) mod definition;
+/// Rules that end a trial.
+pub(crate) mod end;
 /// Files of a document.
 pub(crate) mod files;
 /// Settings of a part.
@@ -80,16 +82,19 @@ pub(crate) mod wiring;
 /// Wrappers.
 pub(crate) mod wrapper;
 
+pub use end::{End, EndPart};
 pub use keys::Keys;
 pub use moment::Moment;
 pub use motor::MotorPart;
 pub use network::{NetworkEnds, NetworkPart, PartNetwork};
 pub use object::{
-    PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
+    PlanarEnd, PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialEnd, SpatialMotor, SpatialSensor,
+    SpatialStart, SpatialTerm,
 };
 pub use registration::{
-    motor, network, planar_motor, planar_sensor, planar_start, planar_term, robot_on_wheels, robot_with_joints, sensor,
-    spatial_motor, spatial_sensor, spatial_start, spatial_term, start, term, thing, wrapper,
+    end, motor, network, planar_end, planar_motor, planar_sensor, planar_start, planar_term, robot_on_wheels,
+    robot_with_joints, sensor, spatial_end, spatial_motor, spatial_sensor, spatial_start, spatial_term, start, term,
+    thing, wrapper,
 };
 pub use scene::{Area, PartScene};
 pub use sensor::{Quantity, SensorPart};

@@ -6,13 +6,14 @@ use std::fmt;
 use farsa_body::ports::{Motor, Sensor};
 use farsa_physics::{arena, articulated};
 
+use crate::part::end::End;
 use crate::part::start::Start;
 use crate::part::term::Term;
 
 /// Abilities in the worlds of rapier, which exist only with the feature `rapier`.
 mod in_rapier {
     #[cfg(feature = "rapier")]
-    use super::{Motor, Sensor, Start, Term};
+    use super::{End, Motor, Sensor, Start, Term};
 
     macro_rules! in_rapier {
         ($name:ident, $port:ident, $world:ident) => {
@@ -30,10 +31,12 @@ mod in_rapier {
     in_rapier!(PlanarMotor, Motor, ArenaWorld);
     in_rapier!(PlanarTerm, Term, ArenaWorld);
     in_rapier!(PlanarStart, Start, ArenaWorld);
+    in_rapier!(PlanarEnd, End, ArenaWorld);
     in_rapier!(SpatialSensor, Sensor, World);
     in_rapier!(SpatialMotor, Motor, World);
     in_rapier!(SpatialTerm, Term, World);
     in_rapier!(SpatialStart, Start, World);
+    in_rapier!(SpatialEnd, End, World);
 }
 
 /// Declares a trait of types with a port in the worlds of an engine, alone and in lanes.
@@ -104,6 +107,10 @@ object! {
     PlanarStart, Start, arena::World, arena
 }
 object! {
+    /// An end of a trial for robots on wheels.
+    PlanarEnd, End, arena::World, arena
+}
+object! {
     /// A sensor for robots with joints.
     SpatialSensor, Sensor, articulated::World<f32>, articulated
 }
@@ -118,4 +125,8 @@ object! {
 object! {
     /// A placement for robots with joints.
     SpatialStart, Start, articulated::World<f32>, articulated
+}
+object! {
+    /// An end of a trial for robots with joints.
+    SpatialEnd, End, articulated::World<f32>, articulated
 }

@@ -7,10 +7,12 @@ use farsa_lab::advanced::Part;
 
 use crate::document::Object;
 use crate::part::definition::{Build, Definition, Given, Maker, keys};
+use crate::part::end::EndPart;
 use crate::part::motor::{AnyMotor, MotorPart};
 use crate::part::network::{AnyNetworkPart, NetworkPart};
 use crate::part::object::{
-    PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialMotor, SpatialSensor, SpatialStart, SpatialTerm,
+    PlanarEnd, PlanarMotor, PlanarSensor, PlanarStart, PlanarTerm, SpatialEnd, SpatialMotor, SpatialSensor,
+    SpatialStart, SpatialTerm,
 };
 use crate::part::scene::PartScene;
 use crate::part::sensor::{AnySensor, SensorPart};
@@ -35,6 +37,8 @@ building!(planar_term_of, TermPart, Term, term, PlanarTerm);
 building!(spatial_term_of, TermPart, Term, term, SpatialTerm);
 building!(planar_start_of, StartPart, Start, start, PlanarStart);
 building!(spatial_start_of, StartPart, Start, start, SpatialStart);
+building!(planar_end_of, EndPart, End, end, PlanarEnd);
+building!(spatial_end_of, EndPart, End, end, SpatialEnd);
 
 fn any_sensor<P: SensorPart>(given: &Given) -> Result<Box<dyn AnySensor>, Error> {
     Ok(Box::new(keys::<P>(given)?))
@@ -125,6 +129,27 @@ pub fn planar_start<P: StartPart<Start: PlanarStart>>(name: &'static str) -> Par
 /// Registers a kind of placement for robots with joints under a name.
 pub fn spatial_start<P: StartPart<Start: SpatialStart>>(name: &'static str) -> Part {
     Definition::part::<P>(name, Build::Start((None, Some(spatial_start_of::<P>)), any_start::<P>))
+}
+
+/// Registers a kind of end for all robots under a name.
+pub fn end<P>(name: &'static str) -> Part
+where
+    P: EndPart<End: PlanarEnd + SpatialEnd>,
+{
+    Definition::part::<P>(
+        name,
+        Build::End((Some(planar_end_of::<P>), Some(spatial_end_of::<P>)), P::DEPENDS_ON_SUCCESS),
+    )
+}
+
+/// Registers a kind of end for robots on wheels under a name.
+pub fn planar_end<P: EndPart<End: PlanarEnd>>(name: &'static str) -> Part {
+    Definition::part::<P>(name, Build::End((Some(planar_end_of::<P>), None), P::DEPENDS_ON_SUCCESS))
+}
+
+/// Registers a kind of end for robots with joints under a name.
+pub fn spatial_end<P: EndPart<End: SpatialEnd>>(name: &'static str) -> Part {
+    Definition::part::<P>(name, Build::End((None, Some(spatial_end_of::<P>)), P::DEPENDS_ON_SUCCESS))
 }
 
 /// Registers a kind of wrapper under a name.

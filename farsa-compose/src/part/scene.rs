@@ -37,6 +37,8 @@ pub(crate) trait Surroundings {
     fn actuators(&self, joints: &[String]) -> Result<Vec<ActuatorId>, Error>;
     /// Returns contact pairs of the robot.
     fn contacts(&self, bodies: &[String], with: Option<&str>) -> Result<Vec<PairId>, Error>;
+    /// Returns the contact pairs of all robots with anything, or of the robot with joints with things.
+    fn collisions(&self) -> Vec<PairId>;
     /// Gets the robot on wheels, if any.
     fn mobile_robot(&self) -> Option<&MobileRobot>;
     /// Gets the parts of the robot on wheels, if any.
@@ -95,6 +97,8 @@ pub(crate) trait Surroundings {
     fn joint_name(&self, joint: JointId) -> &str;
     /// Gets the range of a joint [rad or m].
     fn range(&self, joint: JointId) -> [f64; 2];
+    /// Returns the position of a joint in a keyframe of the model, or in the configuration of the file for an empty name.
+    fn position_in(&self, keyframe: &str, joint: JointId) -> Result<f64, Error>;
     /// Describes the joint of a channel, from those named or from all that fit.
     fn joint(&self, names: &[String], channel: usize, fits: &dyn Fn(JointId) -> bool) -> JointAbout;
     /// Returns named joints, or without names all that fit.
@@ -105,10 +109,11 @@ pub(crate) trait Surroundings {
     fn open_wiring(&self) -> Option<&RefCell<Wiring>>;
 }
 
-/// Name of a joint, its range [rad or m], the units of its position, speed and effort, and its own largest torque.
+/// Name and identifier of a joint, its range [rad or m], the units of its position, speed and effort, and its own largest torque.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointAbout {
     pub(crate) name: String,
+    pub(crate) id: Option<JointId>,
     pub(crate) range: [f64; 2],
     pub(crate) units: [&'static str; 3],
     pub(crate) torque: Option<f64>,
@@ -244,6 +249,12 @@ impl<'s> PartScene<'s> {
     /// Returns [`Error::Setting`] for an unknown name, and if nothing can touch.
     pub fn contacts(&self, bodies: &[String], with: Option<&str>) -> Result<Vec<PairId>, Error> {
         self.0.contacts(bodies, with)
+    }
+
+    /// Returns the contact pairs that count as collisions: those of all robots on wheels, or those between the robot
+    /// with joints and things.
+    pub fn collisions(&self) -> Vec<PairId> {
+        self.0.collisions()
     }
 
     /// Gets the robot on wheels. Returns `None` for a robot with joints.

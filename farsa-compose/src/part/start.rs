@@ -19,6 +19,14 @@ pub trait Start<W: ?Sized> {
         let _ = stream;
         None
     }
+
+    /// Draws the position \[rad or m\] and the speed of a joint, or one number of the pose and velocity of a free body, around a
+    /// position of the posture.
+    #[doc(hidden)]
+    fn around(&self, position: f32, stream: &mut Stream) -> Option<[f32; 2]> {
+        let _ = (position, stream);
+        None
+    }
 }
 
 /// A custom kind of placement, for the key `at` of `[[start]]`. Its fields are the other keys.
@@ -48,6 +56,13 @@ pub trait StartPart: Keys {
         false
     }
 
+    /// Returns the name of the posture of a rule for the whole robot, which has [`Start::around`], and the height by which it is
+    /// raised \[m\]. The name is empty for the configuration of the file.
+    #[doc(hidden)]
+    fn posture(&self) -> Option<(&str, f64)> {
+        None
+    }
+
     /// Counts the points of which a trial takes one.
     #[doc(hidden)]
     fn points(&self) -> Option<usize> {
@@ -60,6 +75,7 @@ pub(crate) trait AnyStart {
     fn is_of_joints(&self) -> bool;
     fn is_one_place(&self) -> bool;
     fn measures_centers(&self) -> bool;
+    fn posture(&self) -> Option<(&str, f64)>;
     fn points(&self) -> Option<usize>;
 }
 
@@ -74,6 +90,10 @@ impl<T: StartPart> AnyStart for T {
 
     fn measures_centers(&self) -> bool {
         StartPart::measures_centers(self)
+    }
+
+    fn posture(&self) -> Option<(&str, f64)> {
+        StartPart::posture(self)
     }
 
     fn points(&self) -> Option<usize> {

@@ -8,7 +8,7 @@ use farsa_lab::{Combination, Error, Note, Outcome};
 use farsa_num::Scalar;
 
 use crate::check::source::Source;
-use crate::document::{Condition, Document, Ending, Trials};
+use crate::document::{Condition, Document, Trials};
 use crate::parts::behaviour::TermBehaviour;
 use crate::parts::conditions::FormulaConditions;
 use crate::parts::constant_fitness::warning;
@@ -82,7 +82,7 @@ impl Ledger {
         let end = conditions("end", &document.end)?;
         // A late term has no value before the end of the trial, so nothing within the trial may depend on it. Success
         // matters within the trial only if it ends the trial.
-        let ends_with_success = document.episode.ends.contains(&Ending::Success);
+        let ends_with_success = source.registry.ends_with_success(document);
         let of_steps_of = |wanted: &&Wanted| ends_with_success || wanted.steps().is_some();
         let watched = success.iter().filter(of_steps_of).chain(&failure).chain(&end).flat_map(Wanted::terms);
         let watched: Vec<usize> = watched.chain(tallies.iter().filter_map(|tally| tally.during)).collect();

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use farsa_lab::advanced::{Iteration, Learner as LabLearner};
+use farsa_lab::advanced::{Iteration, Learner as LabLearner, OwnedNetwork};
 use farsa_lab::{Error, Parameter};
 use farsa_nn::block::BlockParameter;
 use farsa_nn::learning::{Adam, Differentiable, Gradient, Learner, Loss};
@@ -14,7 +14,6 @@ use crate::check::source::Source;
 use crate::document::{Document, Learning, LossName};
 use crate::networks::blocks::BlocksNetwork;
 use crate::networks::ctrnn::CtrnnNetwork;
-use crate::networks::leaky::LeakyNetwork;
 use crate::networks::perceptron::PerceptronNetwork;
 use crate::parts::lessons::{Lesson, lessons};
 use crate::parts::network::AnyNetwork;
@@ -111,7 +110,7 @@ impl Trainee {
             let parameters = layer.parameters().iter().map(|_| weight()).collect();
             return self.of_kind(layer.clone(), parameters, none);
         }
-        if let Some(LeakyNetwork { network }) = self.network.downcast() {
+        if let Some(network) = self.network.downcast::<OwnedNetwork>() {
             let kinds: Vec<LeakyParameter> = network.layout().kinds().collect();
             let mut parameters: Vec<f32> = kinds.iter().map(|_| weight()).collect();
             for (value, _) in parameters.iter_mut().zip(kinds).filter(|(_, kind)| *kind == LeakyParameter::Leak) {

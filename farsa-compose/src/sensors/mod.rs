@@ -50,6 +50,8 @@ mod laser_distance;
 mod light;
 /// Positions of markers relative to a body.
 mod marker_position;
+/// Orientations of bodies.
+mod orientation;
 /// Signals.
 mod signal;
 /// Positions of things.
@@ -82,6 +84,8 @@ pub(crate) fn sensors() -> Vec<Part> {
         sensor::<contact_force::ContactForce>("contact-force"),
         sensor::<target_position::TargetPosition>("target-position"),
         sensor::<body_pose::BodyPose>("body-pose"),
+        sensor::<orientation::Orientation>("orientation"),
+        sensor::<orientation::Up>("up"),
         sensor::<body_velocity::BodyVelocity>("body-velocity"),
         sensor::<height::Height>("height"),
         sensor::<joint_position::JointPosition>("joint-position"),

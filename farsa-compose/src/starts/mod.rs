@@ -18,6 +18,8 @@ mod in_box;
 mod near;
 /// Choices among points.
 mod one_of;
+/// Postures of the whole robot.
+mod posture;
 /// Positions of joints.
 mod turned;
 
@@ -29,6 +31,7 @@ pub(crate) fn starts() -> Vec<Part> {
         planar_start::<around::Around>("around"),
         spatial_start::<in_box::InBox>("in-box"),
         start::<one_of::OneOf>("one-of"),
+        spatial_start::<posture::Posture>("posture"),
         spatial_start::<turned::Turned>("turned"),
         start::<fixed::Fixed>("fixed"),
     ]

@@ -10,6 +10,8 @@ use crate::part::{Filter, wrapper};
 
 /// Delays.
 mod delay;
+/// Numbers that each trial draws.
+mod drawn;
 /// Channels at 0.
 mod lesion;
 /// Noise.
@@ -22,6 +24,8 @@ mod scale;
 mod stuck;
 /// Zeros and ones.
 mod threshold;
+/// Values that swing with time.
+mod wave;
 
 /// Lists them under their names.
 pub(crate) fn wrappers() -> Vec<Part> {
@@ -34,6 +38,8 @@ pub(crate) fn wrappers() -> Vec<Part> {
         wrapper::<threshold::Threshold>("threshold"),
         wrapper::<lesion::Lesion>("lesion"),
         wrapper::<stuck::Stuck>("stuck"),
+        wrapper::<drawn::Drawn>("drawn"),
+        wrapper::<wave::Wave>("wave"),
     ]
 }
 

@@ -1,7 +1,5 @@
 //! A custom sensor and a custom term for experiment files.
 
-use std::process::ExitCode;
-
 use farsa_body::ports::{BodyId, Channels, Handles, Kinematics, Sensor};
 use farsa_compose::part::{self, Moment, PartScene, SensorPart, Term, TermPart};
 use farsa_lab::{Error, Laboratory};
@@ -77,7 +75,9 @@ impl TermPart for Path {
     }
 }
 
-fn main() -> ExitCode {
+fn laboratory() -> Laboratory<'static> {
     let laboratory = Laboratory::new(&[]).with_files(farsa_compose::FILES);
-    laboratory.with_part(part::sensor::<Compass>("compass")).with_part(part::term::<Path>("path")).main()
+    laboratory.with_part(part::sensor::<Compass>("compass")).with_part(part::term::<Path>("path"))
 }
+
+farsa_lab::main!(laboratory);

@@ -91,7 +91,7 @@ fn what_is_wrong_is_named_with_file_line_and_key() {
         (
             "at = \"anywhere\"",
             "",
-            "look.toml line 22: start.1: lacks the key `at`: one of anywhere, near, around, in-box, one-of, turned, fixed",
+            "look.toml line 22: start.1: lacks the key `at`: one of anywhere, near, around, in-box, one-of, posture, turned, fixed",
         ),
         ("walls = 0.1", "wals = 0.1", "look.toml line 25: unknown key `wals`; the nearest is `walls`"),
         (

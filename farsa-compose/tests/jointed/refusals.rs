@@ -109,7 +109,7 @@ fn parts_of_jointed_robots_are_refused_on_wheels() {
             ),
             "`foraging.nest`: `nest` is no disc".into(),
         ),
-        (text("", "[episode]\nends = [\"death\"]"), "`episode.ends`: needs the section `foraging`".into()),
+        (text("", "[episode]\nends = [\"death\"]"), "`episode.ends.1`: needs the section `foraging`".into()),
         (text("", "[[reward]]\nkind = \"alive\""), "`reward.2`: needs the section `foraging`".into()),
         (text("", "[[sensors]]\nkind = \"carried\""), "`sensors.2`: needs the section `foraging`".into()),
     ] {

@@ -7,8 +7,10 @@ use farsa_body::ports::BodyId;
 use farsa_body::testing::{check_motor, check_sensor};
 use farsa_compose::{ComposedExperiment, FILES};
 use farsa_lab::advanced::{Lanes, Recording, Vocabulary};
+use farsa_lab::exports::NetworkExport;
 use farsa_lab::strategy::strategies;
 use farsa_lab::{EpisodeId, Error, Evaluation, Evaluator, Experiment as _, Note, Outcome, Settings};
+use farsa_nn::{Controller as _, Perceptron};
 use farsa_num::Instructions;
 use serde_json::Value;
 
@@ -161,6 +163,84 @@ fn an_own_term_ends_a_trial() {
     }
     // The same condition as a formula.
     assert_eq!(outcomes(&text.replace("[{ term = \"path\", above = 0.5 }]", "\"path > 0.5 m\"")), compared);
+}
+
+#[test]
+fn an_own_end_ends_a_trial() {
+    let text = WHEELS
+        .replace("steps = 60", "steps = 600, ends = [\"across\"]")
+        .replace("end = [{ term = \"path\", above = 0.5 }]\n", "");
+    let text = text.replace("twist", "wheels").replace(", largest = 4.0 }]\nnetwork", " }]\nnetwork");
+    let mut evaluator = evaluator(&text);
+    let all = [vec![3.0; evaluator.info().parameters.len()]];
+    for job in jobs(&all) {
+        let mut recording = Recording::new(evaluator.info().schema);
+        let outcome = evaluator.evaluate(job, Some(&mut recording as &mut dyn Recorder));
+        let x = |tick: u32| recording.pose_at(tick as usize, BodyId(0)).expect("a pose").position[0];
+        assert!(outcome.steps < 600 && x(outcome.steps - 1) > 0.5 && x(outcome.steps - 2) <= 0.5, "{outcome:?}");
+    }
+    let error = refused(&text.replace("\"across\"", "\"acros\""));
+    assert!(error.contains("`acros`; the nearest is `across`"), "{error}");
+}
+
+/// An end with a key, for which a word has no place.
+#[derive(Clone, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+struct Beyond {
+    /// A line.
+    x: f64,
+}
+
+impl farsa_compose::part::EndPart for Beyond {
+    type End = own::AcrossEnd;
+    fn end(&self, scene: &farsa_compose::part::PartScene<'_>) -> Result<own::AcrossEnd, Error> {
+        own::Across {}.end(scene)
+    }
+}
+
+#[test]
+fn an_end_with_keys_is_refused() {
+    let mut parts = parts();
+    parts.push(farsa_compose::part::end::<Beyond>("beyond"));
+    let vocabulary = Vocabulary { strategies: strategies(), parts: &parts };
+    let error = ComposedExperiment::from_text("own.toml", WHEELS, vocabulary).err().expect("an error").to_string();
+    assert!(error.contains("the end `beyond` of this program has keys"), "{error}");
+}
+
+/// Sensor and motor values of each step.
+#[derive(Default)]
+struct Steps(Vec<[Vec<f32>; 2]>);
+
+impl Recorder for Steps {
+    fn sensors(&mut self, x: &[f32]) {
+        self.0.push([x.to_vec(), Vec::new()]);
+    }
+    fn outputs(&mut self, y: &[f32]) {
+        if let Some([_, outputs]) = self.0.last_mut() {
+            *outputs = y.to_vec();
+        }
+    }
+    fn tick(&mut self, _: f64) {}
+}
+
+/// The controller of a program's own network is exported with the bits of a trial.
+#[test]
+fn an_own_network_is_exported() {
+    for text in [WHEELS, JOINTS] {
+        let mut evaluator = evaluator(&text.replace("kind = \"echo\", largest = 3.0", "kind = \"steep\", slope = 2.5"));
+        let parameters = parameters(evaluator.as_ref(), 2);
+        let export = evaluator.exports().and_then(|exports| exports.controller(&parameters)).expect("a controller");
+        let NetworkExport::Perceptron { inputs, outputs, slope: 2.5, parameters: exported } = export.network else {
+            panic!("{:?}", export.network)
+        };
+        let mut network = Perceptron::new(inputs, outputs, 2.5, exported).expect("a layer");
+        let (mut steps, mut y) = (Steps::default(), vec![0.0; outputs]);
+        evaluator.evaluate(Evaluation::new(&parameters, EpisodeId::default()), Some(&mut steps));
+        for [sensed, done] in steps.0.iter().filter(|[_, done]| !done.is_empty()) {
+            network.step(sensed, &mut y);
+            assert_eq!(y, *done);
+        }
+        assert!(steps.0.len() > 50);
+    }
 }
 
 #[test]
@@ -358,7 +438,7 @@ fn the_schema_has_all_registered_names_and_no_others() {
         ("Sensor", "kind", &["bearing"][..]),
         ("Motor", "kind", &["twist"]),
         ("Wrapper", "kind", &["smooth"]),
-        ("Network", "kind", &["echo"]),
+        ("Network", "kind", &["echo", "steep"]),
         ("Reward", "kind", &["away", "path"]),
         ("Start", "at", &["on-line"]),
         ("Object", "kind", &["gate"]),
@@ -367,6 +447,10 @@ fn the_schema_has_all_registered_names_and_no_others() {
         let added = after.split_off(before.len());
         assert_eq!((after, added), (before, names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>()));
     }
+    let ends = own["$defs"]["Ending"]["oneOf"].as_array().expect("words");
+    let words: Vec<&str> = ends.iter().filter_map(|word| word["const"].as_str()).collect();
+    assert_eq!(words, ["collision", "success", "death", "across"]);
+    assert_eq!(ends[3]["description"], "The robot crosses the line x = 0.5 m.");
 }
 
 #[test]
@@ -382,4 +466,20 @@ fn own_parts_keep_the_promises_of_sensors_and_motors() {
     assert_ne!(parts.body, BodyId(9));
     check_sensor(&mut sensor, &world).expect("a sensor");
     check_motor(&mut TwistMotor(parts.motors.to_vec(), 4.0), || world.clone()).expect("a motor");
+}
+
+#[test]
+fn each_part_takes_at_most_forty_lines() {
+    let text = include_str!("own.rs");
+    for part in ["Bearing", "Twist", "Smooth", "Steep", "Across", "Away", "Path", "OnLine", "Gate"] {
+        let (is, of) = (format!("pub(crate) struct {part}"), format!(" for {part}"));
+        let mut lines = 0;
+        let mut within = false;
+        for line in text.lines() {
+            within |= line.starts_with(&is) || line.starts_with("impl") && line.contains(&of);
+            lines += usize::from(within);
+            within &= line != "}";
+        }
+        assert!((10..=40).contains(&lines), "{part} takes {lines} lines");
+    }
 }

@@ -6,13 +6,12 @@ use farsa_body::robot::{Joint, MassProperties, Robot, Segment};
 use farsa_body::robots::MobileRobot;
 use farsa_compose::document::{Object, Shape};
 use farsa_compose::part::{
-    self, Filter, Moment, MotorPart, NetworkEnds, NetworkPart, PartNetwork, PartScene, Quantity, SensorPart, Spot,
-    Start, StartPart, Term, TermPart, ThingPart, WrapperPart,
+    self, End, EndPart, Filter, Moment, MotorPart, NetworkEnds, NetworkPart, PartNetwork, PartScene, Quantity,
+    SensorPart, Spot, Start, StartPart, Term, TermPart, ThingPart, WrapperPart,
 };
 use farsa_lab::advanced::Part;
-use farsa_lab::exports::NetworkExport;
 use farsa_lab::{Error, Parameter};
-use farsa_nn::{Ablatable, Controller, Lesion};
+use farsa_nn::{Ablatable, Controller, Lesion, Perceptron};
 use farsa_num::{Scalar, Stream};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -197,9 +196,6 @@ impl PartNetwork for EchoNetwork {
     fn activations(&self) -> &[f32] {
         &self.state
     }
-    fn export(&self) -> Option<NetworkExport> {
-        None
-    }
 }
 
 impl NetworkPart for Echo {
@@ -212,6 +208,47 @@ impl NetworkPart for Echo {
         let [inputs, outputs] = ends.shape();
         let names = (0..(inputs + 1) * outputs).map(|number| format!("weight {}", number + 1));
         names.map(|name| Parameter::new(name, [-self.largest, self.largest])).collect()
+    }
+}
+
+/// One layer with another slope.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+pub(crate) struct Steep {
+    /// Slope of the logistic function.
+    #[schemars(range(min = 0.1, max = 100.0))]
+    slope: f64,
+}
+
+impl NetworkPart for Steep {
+    type Network = Perceptron<Vec<f32>>;
+    fn network(&self, ends: &NetworkEnds<'_>) -> Result<Self::Network, Error> {
+        let [inputs, outputs] = ends.shape();
+        let parameters = vec![0.0; Perceptron::parameter_count(inputs, outputs)];
+        Ok(Perceptron::new(inputs, outputs, self.slope as f32, parameters)?)
+    }
+    fn parameters(&self, network: &Self::Network, ends: &NetworkEnds<'_>) -> Vec<Parameter> {
+        let names = (1..=network.parameters().len()).map(|number| format!("weight {number}"));
+        names.map(|name| Parameter::new(name, ends.weights)).collect()
+    }
+}
+
+/// The robot crosses the line x = 0.5 m.
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
+pub(crate) struct Across {}
+
+#[derive(Clone)]
+pub(crate) struct AcrossEnd(BodyId);
+
+impl<W: Kinematics + Handles<Body = BodyId>> End<W> for AcrossEnd {
+    fn ends(&self, world: &W, _: &Moment<'_>, _: bool) -> bool {
+        world.pose(self.0).position[0] > 0.5
+    }
+}
+
+impl EndPart for Across {
+    type End = AcrossEnd;
+    fn end(&self, scene: &PartScene<'_>) -> Result<AcrossEnd, Error> {
+        Ok(AcrossEnd(scene.body(None)?))
     }
 }
 
@@ -334,6 +371,8 @@ pub(crate) fn parts() -> Vec<Part> {
         part::motor::<Twist>("twist"),
         part::wrapper::<Smooth>("smooth"),
         part::network::<Echo>("echo"),
+        part::network::<Steep>("steep"),
+        part::end::<Across>("across"),
         part::term::<Away>("away"),
         part::term::<Path>("path"),
         part::start::<OnLine>("on-line"),

@@ -200,8 +200,17 @@ fn nearness_is_measured_from_the_surface() {
     }
 }
 
-pub(crate) const SENSORS: &[&str] =
-    &["joint-position", "joint-speed", "target-position", "body-pose", "body-velocity", "height", "constant"];
+pub(crate) const SENSORS: &[&str] = &[
+    "joint-position",
+    "joint-speed",
+    "target-position",
+    "body-pose",
+    "body-velocity",
+    "height",
+    "constant",
+    "orientation",
+    "up",
+];
 
 #[test]
 fn each_sensor_of_a_falling_robot_has_its_value() {

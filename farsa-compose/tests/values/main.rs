@@ -13,6 +13,7 @@ mod exports;
 mod formulas;
 mod joints;
 mod kinds;
+mod postures;
 mod recordings;
 mod senses;
 mod starts;

@@ -30,6 +30,8 @@ pub(crate) const SENSORS: &[&str] = &[
     "energy",
     "carried",
     "constant",
+    "orientation",
+    "up",
 ];
 
 const STEPS: &str = "[[reward]]\nkind = \"steps\"\n";
@@ -60,7 +62,8 @@ fn sensors_of_motion_read_the_motion() {
         [[sensors]]\nname = \"right\"\nkind = \"joint-position\"\njoints = [\"right-wheel\"]\nfrom = 3.0\nto = 1.0\n\
         [[sensors]]\nkind = \"joint-speed\"\njoints = [\"right-wheel\", \"left-wheel\"]\n\
         [[sensors]]\nkind = \"constant\"\nvalue = -0.45\n[[sensors]]\nkind = \"touch\"\n[[sensors]]\nkind = \"contact-force\"\n\
-        [[sensors]]\nkind = \"traction\"\nlargest = 0.3\n";
+        [[sensors]]\nkind = \"traction\"\nlargest = 0.3\n\
+        [[sensors]]\nkind = \"orientation\"\n[[sensors]]\nkind = \"up\"\n";
     let trial = Trial::new(&file(OUTPUTS, sensors, STEPS));
     // Shares 0.8 and 0.4 of the greatest speed.
     let [left, right] = [0.8, 0.4].map(|share| share * SPEED / WHEEL);
@@ -92,6 +95,8 @@ fn sensors_of_motion_read_the_motion() {
         sensor("touch", &[0.0]);
         sensor("contact-force", &[0.0]);
         sensor("traction", &[0.0, 0.0]);
+        sensor("orientation", &[0.0, 0.0, sign * half.sin(), sign * half.cos()]);
+        sensor("up", &[0.0, 0.0, 1.0]);
     }
     assert!(
         refused(&file(OUTPUTS, "[[sensors]]\nkind = \"joint-position\"\n", STEPS)).contains("lacks the key `from`")

@@ -5,7 +5,7 @@ use farsa_num::{Domain, Stream};
 use crate::{Trial, all_close, close};
 
 pub(crate) const WRAPPERS: &[&str] =
-    &["uniform-noise", "normal-noise", "delay", "scale", "saturate", "threshold", "lesion", "stuck"];
+    &["uniform-noise", "normal-noise", "delay", "scale", "saturate", "threshold", "lesion", "stuck", "drawn", "wave"];
 
 const STEPS: u32 = 12;
 
