@@ -69,6 +69,7 @@ impl From<Shape> for Geometry {
         match shape {
             Shape::Sphere { radius } => Self::Sphere { radius },
             Shape::Capsule { radius, half_length } => Self::Capsule { radius, half_length },
+            Shape::Cylinder { radius, half_length } => Self::Cylinder { radius, half_length },
             Shape::Box { half } => Self::Box { half },
             Shape::Plane => Self::Plane,
         }

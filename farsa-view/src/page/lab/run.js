@@ -1,8 +1,9 @@
-// A run: its curve while it grows, its processes, tests, pages and exports.
+// A run: its curve and champion while it grows, its processes, tests, pages and exports.
 
 import { Curve } from "./curve.js";
 import { act, address, bytes, change, command, confirmed, date, field, h, note, number, percent, read, seconds, show, state, success } from "./parts.js";
 import { header } from "./start.js";
+import { framed } from "./trial.js";
 
 const FORMATS = [
   ["json", "Controller with sensors and motors (JSON)"], ["bytes", "Controller for a board (bytes)"], ["c", "Controller in C99"],
@@ -15,14 +16,14 @@ export async function run(name, signal, isHere) {
   const [list, data] = await Promise.all([read("/api/list"), read("/api/run", { name })]);
   if (!isHere()) return;
   header(list);
-  const page = new RunPage(name, list, data);
+  const page = new RunPage(name, list, data, signal);
   show(page.elements);
-  page.follow(signal);
+  page.follow();
 }
 
 class RunPage {
-  constructor(name, list, data) {
-    Object.assign(this, { name, list, data, readOnly: list.read_only });
+  constructor(name, list, data, signal) {
+    Object.assign(this, { name, list, data, signal, readOnly: list.read_only });
     this.curve = new Curve();
     this.state = h("div", { class: "status", id: "status", role: "status" });
     this.meter = h("progress", { max: 1, "aria-label": "Finished generations" });
@@ -40,6 +41,8 @@ class RunPage {
     this.tests = h("section", { class: "card", "aria-labelledby": "tests" });
     this.pages = h("section", { class: "card", "aria-labelledby": "pages" });
     this.exports = h("section", { class: "card", "aria-labelledby": "exports" });
+    this.champion = h("section", { "aria-labelledby": "champion", hidden: true }, h("div", { class: "head" }, h("h2", { id: "champion" }, "Champion"),
+      h("span", { class: "soft" }, "The present champion with its network and channels. The button Follow decides if it follows the run.")));
     this.fill();
     this.draw(data.facts);
   }
@@ -63,6 +66,7 @@ class RunPage {
       h("div", { class: "run" },
         h("div", {}, this.meter, this.curve.element, actions, this.process),
         h("div", { class: "side" }, this.tests, this.pages, this.exports, h("section", { class: "card" }, h("h2", {}, "Facts"), this.summary))),
+      this.champion,
     ];
   }
 
@@ -82,30 +86,64 @@ class RunPage {
     this.data = await read("/api/run", { name: this.name });
     this.fill();
     this.draw(this.data.facts);
+    // An answer may be older than the last event, and the server sends no state that ended between two of its looks.
+    clearTimeout(this.again);
+    if (this.facts.state !== this.sent && !this.signal.aborted) this.again = setTimeout(() => this.reload().catch(() => {}), 1000);
   }
 
-  // New generations and states, as the files of the run grow.
-  follow(signal) {
+  // The trial of the present champion. It stays while its page receives new champions.
+  showChampion() {
+    this.isHeard = false;
+    this.frame = framed(this.name, `/files/champion/${encodeURIComponent(this.name)}`, `Champion of ${this.name}`, this.readOnly, this.signal, (data) => {
+      if (data?.farsa !== "follows") return;
+      this.isHeard = true;
+      this.tell("fitness", this.curve.rows.slice(-1));
+      if (this.champions) this.tell("champions", this.champions);
+    });
+    this.frame.loading = "lazy";
+    this.champion.append(this.frame);
+    this.champion.hidden = false;
+  }
+
+  // Passes an event of the run to the page of the champion, which cannot connect to the server.
+  tell(farsa, data) {
+    if (this.isHeard) this.frame.contentWindow?.postMessage({ farsa, data }, "*");
+  }
+
+  // New generations, champions and states, as the files of the run grow.
+  follow() {
     const open = () => {
       this.events = new EventSource(address("/events", { run: this.name, from: this.curve.rows.length }));
       this.events.addEventListener("fitness", (event) => {
         const rows = JSON.parse(event.data);
         this.curve.add(rows);
+        // The small curve of the frame needs few points.
+        this.tell("fitness", rows.slice(-1));
+      });
+      this.events.addEventListener("champions", (event) => {
+        this.champions = JSON.parse(event.data);
+        // The first champion is saved after the first generation.
+        if (this.frame) this.tell("champions", this.champions);
+        else this.showChampion();
       });
       this.events.addEventListener("state", (event) => {
         const facts = JSON.parse(event.data);
         const ended = this.facts.state !== facts.state;
+        this.sent = facts.state;
         this.draw(facts);
         if (ended) this.reload().catch(() => {});
       });
       this.events.addEventListener("replaced", () => {
         this.events.close();
         this.curve.clear();
+        this.frame?.remove();
+        this.frame = this.champions = null;
+        this.champion.hidden = true;
         open();
       });
     };
     open();
-    signal.addEventListener("abort", () => this.events.close());
+    this.signal.addEventListener("abort", () => this.events.close());
   }
 
   draw(facts) {

@@ -1,10 +1,18 @@
-// The first place: experiments and runs of the folder.
+// The first place: experiments, pages of the gallery and runs of the folder.
 
 import { small } from "./curve.js";
 import { act, bytes, change, confirmed, date, field, h, note, number, read, seconds, show, state, success } from "./parts.js";
 
 // Choices that outlast a visit of another place.
-const view = { text: "", key: "started", down: true, chosen: new Set() };
+const view = { text: "", key: "started", down: true, chosen: new Set(), experiments: { text: "", order: "name" } };
+
+// Orders of the experiments. Built-in ones have no date.
+const ORDERS = {
+  name: ["name", (a, b) => compared(a.name, b.name)],
+  last: ["name, from the end", (a, b) => compared(b.name, a.name)],
+  newest: ["date, newest first", (a, b) => compared(b.modified, a.modified)],
+  oldest: ["date, oldest first", (a, b) => compared(a.modified, b.modified)],
+};
 
 const COLUMNS = [
   ["name", "Run", (run) => run.name],
@@ -23,6 +31,7 @@ function compared(a, b) {
   return typeof a === "string" ? a.localeCompare(b, undefined, { numeric: true }) : a - b;
 }
 
+const wordsOf = (text) => text.toLowerCase().split(/\s+/).filter(Boolean);
 const link = (kind, name) => `#/${kind}/${encodeURIComponent(name)}`;
 
 export async function start(_, signal, isHere) {
@@ -31,7 +40,7 @@ export async function start(_, signal, isHere) {
   header(list);
   const runs = new Runs(list);
   const lead = "Open an experiment, change its settings and press Run. Watch the fitness grow, test the champion on new starts, and compare runs. Everything is kept as files in this folder.";
-  show(h("h1", { class: "hidden" }, "Laboratory"), list.runs.length ? null : h("p", { class: "lead first" }, lead), experiments(list), runs.element);
+  show(h("h1", { class: "hidden" }, "Laboratory"), list.runs.length ? null : h("p", { class: "lead first" }, lead), new Experiments(list).element, runs.element);
   // Running processes change the list.
   const timer = setInterval(async () => {
     if (document.hidden) return;
@@ -46,18 +55,76 @@ export function header(list) {
   document.getElementById("mode").hidden = !list.read_only;
 }
 
-function experiments(list) {
-  const card = ({ name, summary, broken, conditions }, kind) =>
-    h("li", {}, h("a", { class: "tile", href: link("experiment", name) },
-      h("b", {}, name), h("span", { class: broken ? "problem" : "soft" }, broken ? "The text has an error." : summary),
-      conditions?.length ? h("small", { class: "soft" }, `Conditions: ${conditions.join(", ")}`) : null, h("i", { class: "kind" }, kind)));
-  const own = list.files.map((file) => card(file, "file"));
-  const builtIn = list.experiments.map((entry) => card(entry, "built in"));
-  return h("section", { "aria-labelledby": "experiments" },
-    h("div", { class: "head" }, h("h2", { id: "experiments" }, "Experiments"), list.read_only ? null : creation(list)),
-    own.length ? h("ul", { class: "tiles" }, own) : h("p", { class: "hint" },
-      "This folder has no experiment file yet. Begin with a template: a short text that describes a robot, its world and its task."),
-    h("details", { class: "more", open: !own.length && !list.runs.length }, h("summary", {}, `${builtIn.length} built-in experiments`), h("ul", { class: "tiles" }, builtIn)));
+// Experiments by their kind, searched and sorted together.
+class Experiments {
+  constructor(list) {
+    const own = list.files.length > 0;
+    this.groups = [
+      this.group(list.files, "file", null),
+      this.group(list.experiments, "built in", (count) => `${count} built-in experiments`, !own && !list.runs.length),
+      this.group(list.gallery, "gallery", (count) => `${count} ${count === 1 ? "page" : "pages"} of the gallery`),
+    ];
+    this.search = h("input", { type: "search", id: "search-experiments", "aria-label": "Search experiments", placeholder: "Search name, summary, condition, kind", value: view.experiments.text,
+      oninput: () => {
+        view.experiments.text = this.search.value;
+        this.draw();
+      } });
+    this.order = h("select", { id: "order-experiments", "aria-label": "Sort experiments by", onchange: () => {
+      view.experiments.order = this.order.value;
+      this.draw();
+    } }, Object.entries(ORDERS).map(([key, [label]]) => h("option", { value: key }, `Sort by ${label}`)));
+    this.order.value = view.experiments.order;
+    this.count = h("span", { class: "soft", "aria-live": "polite" });
+    this.hint = h("p", { class: "hint" }, "This folder has no experiment file yet. Begin with a template: a short text that describes a robot, its world and its task.");
+    this.none = h("p", { class: "hint" }, "No experiment has these words.");
+    this.hasFiles = own;
+    this.element = h("section", { "aria-labelledby": "experiments" },
+      h("div", { class: "head" }, h("h2", { id: "experiments" }, "Experiments"), this.search, this.order, list.read_only ? null : creation(list), this.count),
+      this.hint, this.none, this.groups.map((group) => group.element));
+    this.draw();
+  }
+
+  // Experiments of a kind. Those with a title can be folded.
+  group(entries, kind, title, open = false) {
+    const tiles = entries.map((entry) => {
+      const { name, summary = "", conditions = [], modified } = entry;
+      return { name, modified, text: [name, summary, kind, ...conditions].join(" ").toLowerCase(), element: tile(entry, kind) };
+    });
+    const list = h("ul", { class: "tiles" });
+    const element = title ? h("details", { class: "more", open, "data-kind": kind }, h("summary", {}, title(tiles.length)), list) : list;
+    return { tiles, list, element, isFolded: title && !open };
+  }
+
+  draw() {
+    const words = wordsOf(view.experiments.text);
+    const by = ORDERS[view.experiments.order][1];
+    let [shown, all] = [0, 0];
+    for (const group of this.groups) {
+      const tiles = group.tiles.filter(({ text }) => words.every((word) => text.includes(word)));
+      tiles.sort((a, b) => by(a, b) || compared(a.name, b.name));
+      group.list.replaceChildren(...tiles.map(({ element }) => element));
+      group.element.hidden = !tiles.length;
+      // A search opens what was folded, and its end folds it again.
+      if (group.element.open !== undefined && this.isSearch !== words.length > 0) {
+        if (words.length) group.isFolded = !group.element.open;
+        group.element.open = words.length > 0 || !group.isFolded;
+      }
+      shown += tiles.length;
+      all += group.tiles.length;
+    }
+    this.isSearch = words.length > 0;
+    this.hint.hidden = this.hasFiles || this.isSearch;
+    this.none.hidden = shown > 0;
+    this.count.textContent = this.isSearch ? `${shown} of ${all}` : "";
+  }
+}
+
+function tile({ name, summary, broken, conditions }, kind) {
+  const isPage = kind === "gallery";
+  const place = isPage ? { href: `/files/gallery/${encodeURIComponent(name)}`, target: "_blank", rel: "noopener" } : { href: link("experiment", name) };
+  return h("li", {}, h("a", { class: "tile", ...place },
+    h("b", {}, isPage ? name.replace(/\.html$/, "") : name), h("span", { class: broken ? "problem" : "soft" }, broken ? "The text has an error." : isPage ? "A page of the folder gallery." : summary),
+    conditions?.length ? h("small", { class: "soft" }, `Conditions: ${conditions.join(", ")}`) : null, h("i", { class: "kind" }, kind)));
 }
 
 function creation(list) {
@@ -128,7 +195,7 @@ class Runs {
 
   draw() {
     this.order.value = view.key;
-    const words = view.text.toLowerCase().split(/\s+/).filter(Boolean);
+    const words = wordsOf(view.text);
     const text = (run) => [run.name, run.experiment, run.condition, run.strategy, run.state].join(" ").toLowerCase();
     const of = COLUMNS.find(([key]) => key === view.key)[2];
     this.shown = this.list.runs.filter((run) => words.every((word) => text(run).includes(word)));

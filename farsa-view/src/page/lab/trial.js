@@ -9,17 +9,23 @@ export async function trial(run, signal, isHere) {
   const list = await read("/api/list");
   if (!isHere()) return;
   header(list);
-  const frame = h("iframe", { class: "trial", sandbox: "allow-scripts allow-downloads allow-modals", title: `Trial of ${run}`, src: `/files/pages/live-${encodeURIComponent(run)}.html` });
+  const frame = framed(run, `/files/pages/live-${encodeURIComponent(run)}.html`, `Trial of ${run}`, list.read_only, signal);
+  show(h("div", { class: "head" }, h("h1", {}, "Trial of ", h("a", { href: `#/run/${encodeURIComponent(run)}` }, run))), frame);
+}
+
+// An interactive page of a run in a frame. `hear` receives the messages of the page that ask for nothing to be kept.
+export function framed(run, src, title, readOnly, signal, hear = () => {}) {
+  const frame = h("iframe", { class: "trial", sandbox: "allow-scripts allow-downloads allow-modals", title, src });
   // A laboratory that keeps nothing leaves saving to the browser.
-  if (!list.read_only) frame.addEventListener("load", () => frame.contentWindow.postMessage({ farsa: "laboratory" }, "*"));
-  const hear = async ({ source, data }) => {
-    if (source !== frame.contentWindow || data?.farsa !== "keep" || !Object.hasOwn(KEPT, data.kind) || typeof data.text !== "string") return;
+  if (!readOnly) frame.addEventListener("load", () => frame.contentWindow.postMessage({ farsa: "laboratory" }, "*"));
+  addEventListener("message", async ({ source, data }) => {
+    if (source !== frame.contentWindow) return;
+    if (data?.farsa !== "keep") return hear(data);
+    if (readOnly || !Object.hasOwn(KEPT, data.kind) || typeof data.text !== "string") return;
     const text = await kept(run, data).catch((error) => (note(error.message, "wrong"), error.message));
     frame.contentWindow?.postMessage({ farsa: "kept", text }, "*");
-  };
-  addEventListener("message", hear);
-  signal.addEventListener("abort", () => removeEventListener("message", hear));
-  show(h("div", { class: "head" }, h("h1", {}, "Trial of ", h("a", { href: `#/run/${encodeURIComponent(run)}` }, run))), frame);
+  }, { signal });
+  return frame;
 }
 
 async function kept(run, { kind, text }) {

@@ -8,7 +8,7 @@ const AROUND = 4.5;
 
 // 1, 2 or 5 times a power of ten, not below x.
 const rounded = (x) => {
-	const power = 10**floor(Math.log10(x));
+	const power = 10**floor(log10(x));
 	return power*[1, 2, 5, 10].find((m) => m*power >= x*0.999);
 };
 
@@ -79,13 +79,13 @@ function survey(trial, fromAbove) {
 	const [root] = fromAbove ? [] : moving.filter((m) => !m.thing);
 	const parts = root ? focus.map((ball) => ({...ball, at: sub(ball.at, trial.pose(ball.t, root.body).position)})) : focus;
 	const travels = spanOf(focus) > 2.5*spanOf(parts) ? {body: root.body, balls: parts} : null;
-	Object.assign(trial, {balls, bounds: boundsOf(balls), focus, floors, moving, trails, travels, has, force: forces[floor(forces.length*0.95)] || 1});
+	assign(trial, {balls, bounds: boundsOf(balls), focus, floors, moving, trails, travels, has, force: forces[floor(forces.length*0.95)] || 1});
 }
 
 // One camera for both views, so that trials are compared from the same viewpoint.
 class Camera {
 	constructor(top) {
-		Object.assign(this, {name: top ? "top" : "overview", top, followed: null, carried: null});
+		assign(this, {name: top ? "top" : "overview", top, followed: null, carried: null});
 	}
 
 	axes(top = this.top) {

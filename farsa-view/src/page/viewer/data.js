@@ -2,7 +2,8 @@
 // The data of the page, docs/replay-format.md. Everything is checked first, so that a cut or changed page shows an error and no
 // wrong number.
 
-const {abs, ceil, cos, floor, hypot, max, min, round, sin} = Math;
+const {abs, ceil, cos, floor, hypot, log10, max, min, PI, round, sin, sqrt} = Math;
+const {assign, entries, fromEntries} = Object;
 
 class Damage extends Error {}
 // A browser that lacks what the page needs.
@@ -12,6 +13,7 @@ function need(ok, text) {
 	if (!ok) throw new Damage(text);
 }
 
+const inside = (ok, what) => need(ok, `${what} is out of range`);
 const whole = (x) => Number.isInteger(x) && x >= 0;
 const list = (n, make) => Array.from({length: n}, (_, i) => make(i));
 
@@ -50,13 +52,13 @@ const shadesOf = (p) => [(p >> 11)/31, (p >> 5 & 63)/63, (p & 31)/31];
 // The points of a mesh and three of them for each triangle.
 function solidIn({points, triangles}) {
 	const [at, corners] = [new Int16Array(bytesOf(points).buffer), [...new Uint16Array(bytesOf(triangles).buffer)]];
-	need(corners.every((i) => 3*i + 2 < at.length), "a mesh is out of range");
+	inside(corners.every((i) => 3*i + 2 < at.length), "a mesh");
 	return {at, corners};
 }
 
 class Trial {
 	constructor(json, index) {
-		Object.assign(this, json, {index, json, name: String(json.name)});
+		assign(this, json, {index, json, name: String(json.name)});
 		const {ticks, bodies, points, blocks} = json;
 		const of = `of trial ${index}`;
 		need(whole(ticks) && ticks, `there are no ticks ${of}`);
@@ -73,7 +75,7 @@ class Trial {
 		// Every machine with a browser is little-endian, so blocks are read in place.
 		const block = (name, size, each) => {
 			const from = blocks[name];
-			need(whole(from) && from%4 === 0 && from + size*each <= bytes.length, `block ${name} ${of} is out of range`);
+			inside(whole(from) && from%4 === 0 && from + size*each <= bytes.length, `block ${name} ${of}`);
 			return each === 4 ? new Float32Array(bytes.buffer, from, size) : from/2;
 		};
 		const words = this.words = new Uint16Array(bytes.buffer, 0, bytes.length >> 1);
@@ -91,7 +93,7 @@ class Trial {
 			return list(ticks, () => {
 				const here = word;
 				word += 1 + 7*words[here];
-				need(word <= words.length, `block ${name} ${of} is out of range`);
+				inside(word <= words.length, `block ${name} ${of}`);
 				return here;
 			});
 		});
@@ -121,7 +123,7 @@ class Trial {
 		const [from, first] = [block("image_starts", 2*ticks*count, 2) + 2*i*ticks, block("pixels", 0, 2)];
 		const starts = list(ticks, (t) => {
 			const start = words[from + 2*t] + 65536*words[from + 2*t + 1];
-			need(whole(columns) && whole(rows) && columns*rows && (start === 0xffffffff || first + start + columns*rows <= words.length), `image ${name} ${of} is out of range`);
+			inside(whole(columns) && whole(rows) && columns*rows && (start === 0xffffffff || first + start + columns*rows <= words.length), `image ${name} ${of}`);
 			return start === 0xffffffff ? NaN : first + start;
 		});
 		return {name, columns, rows, starts};
@@ -140,7 +142,7 @@ class Trial {
 			for (let t = 0; t < ticks; t++) {
 				for (let n = words[word++]; n; n--, word += 2) spots[words[word]].changes.push([t, words[word + 1] && shadesOf(words[word + 1])]);
 			}
-			need(word <= words.length, `block ground_pixels ${of} is out of range`);
+			inside(word <= words.length, `block ground_pixels ${of}`);
 			return spots;
 		});
 	}
@@ -157,24 +159,23 @@ class Trial {
 			sum += whole(first) ? count : NaN;
 		}
 		// A forged network must not read more than was written.
-		need(sum <= this.words.length, `the network ${of} is out of range`);
+		inside(sum <= this.words.length, `the network ${of}`);
 		const weights = block("weights", end, 4);
 		const made = [];
+		const tie = (a, b, more) => {
+			const link = {from: nodes[a], to: nodes[b], ...more};
+			inside(link.from && link.to, `the network ${of}`);
+			made.push(link);
+			for (const node of new Set([link.from, link.to])) node.links.push(link);
+		};
 		for (const {from, to, first} of links) {
 			for (let a = from[0], i = first; a < from[1]; a++) {
 				for (let b = to[0]; b < to[1]; b++) {
-					const link = {from: nodes[a], to: nodes[b], weight: weights[i++]};
-					made.push(link);
-					for (const node of new Set([link.from, link.to])) node.links.push(link);
+					tie(a, b, {weight: weights[i++]});
 				}
 			}
 		}
-		for (const [a, b] of direct) {
-			const link = {from: nodes[a], to: nodes[b], weight: 1, direct: true};
-			need(link.from && link.to, `the network ${of} is out of range`);
-			made.push(link);
-			for (const node of [link.from, link.to]) node.links.push(link);
-		}
+		for (const [a, b] of direct) tie(a, b, {weight: 1, direct: true});
 		for (const {name, nodes: [a, b], first} of values) {
 			for (let n = a; n < b; n++) nodes[n].values.push([name, weights[first + n - a]]);
 		}

@@ -1,21 +1,14 @@
 // Evolution in the page. Workers share each generation, and all report the same outcomes to their strategies.
 
-const CURVES = [["best", 1], ["mean", 2]];
-
 // The fitness of generations as two lines, as wide as the panel.
 function paintFitness(svg, rows) {
-	const known = rows.filter((row) => row[1] !== null && row[2] !== null);
+	const known = rows.filter((row) => !row.includes(null));
 	const [first, last] = [known[0]?.[0], known.at(-1)?.[0]];
-	const values = known.flatMap((row) => [row[1], row[2]]);
+	const values = known.flatMap((row) => row.slice(1));
 	const [low, high] = [min(...values), max(...values)];
 	const at = (row, of) => `${(300*(row[0] - first)/(last - first || 1)).toFixed(1)},${(58 - 56*(row[of] - low)/(high - low || 1)).toFixed(1)}`;
-	svg.replaceChildren(...CURVES.map(([name, of]) => {
-		const line = document.createElementNS(svg.namespaceURI, "polyline");
-		line.setAttribute("class", name);
-		line.setAttribute("points", known.map((row) => at(row, of)).join(" "));
-		return line;
-	}));
-	svg.setAttribute("aria-label", known.length ? `Fitness of generations ${first} to ${last}, from ${shortest(low)} to ${shortest(high)}` : "No fitness yet");
+	svg.replaceChildren(...["best", "mean"].map((name, i) => drawn("polyline", {class: name, points: known.map((row) => at(row, i + 1)).join(" ")})));
+	entitled(svg, known.length ? `Fitness of generations ${first} to ${last}, from ${shortest(low)} to ${shortest(high)}` : "No fitness yet");
 }
 
 const shortest = (x) => (x === null ? "failed" : `${+x.toPrecision(4)}`);
@@ -28,29 +21,53 @@ async function markOf(script, standing, workers) {
 	return firstWorker("once", {script: {...script, standing: await unpackedState(standing)}, request: {do: "state"}});
 }
 
-// The panel of evolution. `open` creates an agent with a state, `show` shows named individuals.
-function evolutionOf({live: {about, script, standing, served}}, open, show) {
+// Passes events of a run to `heard`. A page without an origin is shown by a laboratory, which sends them.
+function hear(run, rows, status, heard) {
+	if (origin === "null") {
+		addEventListener("message", ({source, data}) => source === parent && heard[data?.farsa]?.(data.data));
+		return parent.postMessage({farsa: "follows"}, "*");
+	}
+	const events = new EventSource(`events?run=${run}&from=${rows.length ? rows.at(-1)[0] + 1 : 0}`);
+	events.onopen = () => (status.textContent = "Connected to the run.");
+	events.onerror = () => (status.textContent = "The server does not answer. The page retries.");
+	for (const name in heard) events.addEventListener(name, ({data}) => heard[name](JSON.parse(data)));
+	// The directory holds another run, which has its own page.
+	events.addEventListener("replaced", () => (events.close(), location.reload()));
+}
+
+// The panel of evolution. `open` creates an agent with a state, `show` shows named individuals. `idle` returns true if a new champion
+// may replace the shown one.
+function evolutionOf({live: {about, script, standing, served}}, open, show, idle) {
 	const rows = [...about.history];
-	const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-	svg.setAttribute("viewBox", "0 0 300 60");
-	svg.setAttribute("preserveAspectRatio", "none");
-	svg.setAttribute("role", "img");
-	const [said, status] = [make("p"), make("p", "soft")];
-	let [workers, going, latest] = [null, null, null];
-	const own = {go: button("Continue evolution", () => toggle()), champion: button("Show champion", champion)};
+	const svg = drawn("svg", {viewBox: "0 0 300 60", preserveAspectRatio: "none", role: "img"});
+	const said = make("p"), status = make("p", "soft");
+	let workers, going, latest, shown;
+	const own = {go: button("Continue evolution", toggle), champion: button("Show champion", champion), follow: button("Follow", () => setPressed(own.follow, !isPressed(own.follow)))};
 	own.champion.disabled = true;
-	const panel = make("section", "", make("h2", "", "Evolution"), svg, said, make("div", "bar", own.go, own.champion), status);
+	own.follow.hidden = !served;
+	setPressed(own.follow, origin === "null");
+	const panel = make("section", "", make("h2", "", "Evolution"), svg, said, make("div", "bar", own.go, own.champion, own.follow), status);
 	panel.id = "evolution";
 	$("network").before(panel);
 	panel.hidden = !rows.length && !standing;
 	own.go.hidden = served || !standing;
-	if (served) hear();
+	if (served) {
+		hear(about.run, rows, status, {fitness, champions});
+		follow();
+	}
 	else if (about.standstill) status.textContent = `Evolution cannot continue here: ${about.standstill}.`;
 
 	// The best of each population.
 	function champion() {
+		shown = latest;
 		const names = about.populations.map((name) => `: ${name}`);
-		return show(latest, latest.map((_, i) => `${served ? ", new" : ", evolved here"}${names[i] ?? ""}`));
+		return show(latest, latest.map((_, i) => `${served ? ", new" : ", evolved here"}${names[i] ?? ""}`), served ? "" : "evolved");
+	}
+
+	// Shows each new champion while the page is idle.
+	async function follow() {
+		if (latest !== shown && isPressed(own.follow) && idle()) await champion();
+		setTimeout(follow, 2000);
 	}
 
 	function tell() {
@@ -99,21 +116,15 @@ function evolutionOf({live: {about, script, standing, served}}, open, show) {
 		return all;
 	}
 
-	// Receives new generations from the server.
-	function hear() {
-		const events = new EventSource(`events?run=${about.run}&from=${rows.length ? rows.at(-1)[0] + 1 : 0}`);
-		events.onopen = () => (status.textContent = "Connected to the run.");
-		events.onerror = () => (status.textContent = "The server does not answer. The page tries again.");
-		events.addEventListener("fitness", ({data}) => {
-			rows.push(...JSON.parse(data).filter(([number]) => number > (rows.at(-1)?.[0] ?? -1)));
-			tell();
-		});
-		events.addEventListener("champions", ({data}) => {
-			latest = JSON.parse(data);
-			own.champion.disabled = false;
-		});
-		// The directory holds another run, which has its own page.
-		events.addEventListener("replaced", () => (events.close(), location.reload()));
+	function fitness(more) {
+		rows.push(...more.filter(([number]) => number > (rows.at(-1)?.[0] ?? -1)));
+		tell();
+	}
+
+	function champions(some) {
+		const [{generation, individual}] = latest = some;
+		if (about.individuals.some((one) => one.generation === generation && one.individual === individual)) shown = some;
+		own.champion.disabled = false;
 	}
 
 	function toggle() {

@@ -11,7 +11,7 @@ function filmOf(views, done) {
 		const shown = views().map((view) => view.canvas);
 		const [width, height] = [shown.reduce((sum, one) => sum + one.width, 0), max(...shown.map((one) => one.height))];
 		// Codecs require even sides, which stay constant.
-		if (!recorder) Object.assign(canvas, {width: width & ~1, height: height & ~1});
+		if (!recorder) assign(canvas, {width: width & ~1, height: height & ~1});
 		let left = 0;
 		for (const one of shown) {
 			c.drawImage(one, left, 0);
@@ -39,7 +39,7 @@ function filmOf(views, done) {
 
 // Saves a file.
 function save(name, blob) {
-	const link = Object.assign(make("a"), {href: URL.createObjectURL(blob), download: name});
+	const link = assign(make("a"), {href: URL.createObjectURL(blob), download: name});
 	link.click();
 	setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }

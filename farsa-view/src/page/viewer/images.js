@@ -5,7 +5,7 @@ function imagesOf() {
 
 	function set(trials) {
 		shown = trials.flatMap((trial, i) => trial.images.map(({name, columns, rows}, number) => {
-			const canvas = Object.assign(make("canvas"), {width: columns, height: rows});
+			const canvas = assign(make("canvas"), {width: columns, height: rows});
 			const note = make("span", "soft");
 			const element = make("div", "", canvas, make("p", trials[1] ? `trial-${i}` : "", `${name} `, note));
 			element.dataset.name = name;

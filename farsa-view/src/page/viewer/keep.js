@@ -1,8 +1,8 @@
 // What the page has evolved or changed is saved as a file, or in the folder of the laboratory that shows the page.
 
-let [keeper, keeperSays] = [null, () => {}];
-window.addEventListener("message", ({source, data}) => {
-	if (source === window || source !== window.parent) return;
+let keeper, keeperSays = () => {};
+addEventListener("message", ({source, data}) => {
+	if (source === window || source !== parent) return;
 	if (data?.farsa === "laboratory") keeper = source;
 	else if (data?.farsa === "kept") keeperSays(String(data.text));
 });
@@ -17,16 +17,19 @@ function keep(kind, name, text) {
 const quotedWord = (word) => `'${word.replaceAll("'", "'\\''")}'`;
 
 // The command that repeats a trial of the run. Throws where there is none.
-function commandOf({individual, trial, settings, moves, pushes, changes}, {individuals}) {
-	const {generation, individual: number, origin} = individuals[individual];
+function commandOf(state, {individuals}) {
+	const {trial, settings, changes} = state;
+	const {generation, individual: number, origin} = individuals[state.individual];
 	const why = origin === "random" ? "of a random genome: save its genes" : origin ? "that was evolved here: save the run first"
-		: settings.size ? "with other settings: save the configuration and the genes" : trial.fresh ? "from a fresh start alone"
-		: moves.length + pushes.length ? "with bodies that were moved or pushed" : "";
+		: settings.size ? "with other settings: save the configuration and the genes" : trial.fresh ? "from a fresh start alone" : "";
 	if (why) throw new Error(`No command repeats a trial ${why}.`);
-	const lesion = changes.size ? ` --lesion ${quotedWord(listOf({changes}))}` : "";
+	const lesion = changes.size ? ` --lesion ${quotedWord(listOf(state))}` : "";
+	const hands = isHandled(state) && JSON.stringify(handsOf(state));
 	return `#!/bin/sh
 # Repeats a trial of a page. The argument is the directory of its run.
-farsa replay "\${1:?the directory of the run}" --generation ${generation} --individual ${number} --trial ${trial.number}${lesion} --html trial.html
+farsa replay "\${1:?the directory of the run}" --generation ${generation} --individual ${number} --trial ${trial.number}${lesion}${hands ? " --changes /dev/stdin" : ""} --html trial.html${hands ? ` <<END
+${hands}
+END` : ""}
 `;
 }
 
@@ -41,7 +44,10 @@ function keeping(page, state, about, evolved, say, next) {
 			const {generation, individual} = about.individuals[state.individual];
 			return [`${title}-${generation}-${individual}.gen`, (await answerOf({do: "genotype", individual: state.individual})).text];
 		},
-		configuration: () => [`${title}.changed.toml`, configOf(page, state)],
+		configuration() {
+			if (isHandled(state)) throw new Error("A configuration cannot move or push bodies: save the command.");
+			return [`${title}.changed.toml`, configOf(page, state)];
+		},
 		script: () => [`${title}.trial.sh`, commandOf(state, about)],
 		async run() {
 			const mark = await evolved();
@@ -59,7 +65,6 @@ function keeping(page, state, about, evolved, say, next) {
 			return null;
 		}
 	}
-	const one = Object.assign(button("Save", () => act(what.value)), {id: "keep"});
-	next.before(make("div", "bar", what, one));
+	next.before(make("div", "bar", what, assign(button("Save", () => act(what.value)), {id: "keep"})));
 	return {act};
 }

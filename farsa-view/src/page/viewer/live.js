@@ -2,7 +2,7 @@
 
 // The worker, which answers requests in order. It is passed as text, together with the functions for unpacking only.
 function inWorker() {
-	let [module, last] = [null, Promise.resolve()];
+	let module, last = Promise.resolve();
 	// Opens a session as a function that answers requests.
 	const opened = (script) => {
 		const own = new WebAssembly.Instance(module, {}).exports;
@@ -103,7 +103,7 @@ const answerOf = ({config, ...request}, act = "ask") => firstWorker(act, {reques
 
 // The trial of an answer for the player.
 function trialOf(page, {film}, index, pushes = []) {
-	const trial = Object.assign(new Trial(film, index), {pushes, changed: index > 0});
+	const trial = assign(new Trial(film, index), {pushes, changed: index > 0});
 	survey(trial, page.view === "top");
 	return trial;
 }
@@ -123,17 +123,16 @@ async function liveOf(page) {
 	// A trial that broke down has no fitness.
 	const earned = individuals.at(-1).trials.map(({fitness}) => fitness ?? -Infinity);
 	const best = max(0, earned.indexOf(max(...earned)));
-	const state = {individual: individuals.length - 1, trial: {number: best}, changes: new Map(), settings: new Map(), moves: [], pushes: [], watched: null};
 	// Changes in the address follow when the whole trial is shown.
-	Object.assign(state, heldBy(momentOf(), page.live.about, state.individual), {changes: new Map(), settings: new Map()});
+	const last = individuals.length - 1;
+	const state = {individual: last, newest: last, trial: {number: best}, ...heldBy(momentOf(), page.live.about, last), changes: new Map(), settings: new Map(), moves: [], pushes: [], watched: null};
 	const request = {do: "film", ...asked(state), lesion: ""};
 	const module = firstWorker("compile", {packed}).catch((error) => {
 		// A function that returns a vector.
-		const vectors = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
-		throw WebAssembly.validate(new Uint8Array(vectors)) ? error : new Unsupported("it needs a browser with SIMD in WebAssembly");
+		throw WebAssembly.validate(bytesOf("AGFzbQEAAAABBQFgAAF7AwIBAAoKAQgAQQD9D/1iCw==")) ? error : new Unsupported("it needs a browser with SIMD in WebAssembly");
 	});
 	const short = shortened(script);
-	const begun = short && firstWorker("once", {script: short, request}).catch(() => null);
+	const begun = short && firstWorker("once", {script: short, request}).catch(() => {});
 	const opened = Promise.all([module, firstWorker("open", {script})]);
 	let answer = null;
 	const whole = () => answer ??= opened.then(() => answerOf(request));
@@ -184,32 +183,28 @@ function verdictOf({fresh, number}, {trials}, answer) {
 	return trials[number] ? compared(answer, trials[number]) : "The run has no trial of an individual of this page";
 }
 
-const NONE = "a node or link of the network";
-const button = (text, act = null) => Object.assign(make("button", "", text), {onclick: act});
+const button = (text, act = null) => assign(make("button", "", text), {onclick: act});
 const earnedBy = ({fitness, success}) => fitness === null ? "broken down" : `${success === null ? "fitness " : success ? "success, " : "no success, "}${+fitness.toPrecision(4)}`;
 
 function pick(label, some, act) {
-	const list = make("select");
-	list.setAttribute("aria-label", label);
-	list.replaceChildren(...options(some));
+	const list = entitled(make("select", "", ...options(some)), label);
 	list.onchange = () => act(list.value);
 	return list;
 }
 
 // Creates the panel with its controls.
-function controlsOf({live: {script, about: {robots}}}, acts) {
-	const value = Object.assign(make("input"), {type: "number", step: "any", placeholder: "value"});
-	value.setAttribute("aria-label", "Value");
+function controlsOf({live: {about: {robots}}}, acts) {
+	const value = entitled(assign(make("input"), {type: "number", step: "any", placeholder: "value"}), "Value");
 	const own = {
 		generation: pick("Generation", [], (place) => acts.change({individual: +place})),
 		trial: pick("Trial that is run", [], (number) => number !== "" && acts.change({trial: {number: +number}})),
 		robot: pick("Robot that is recorded", [], (robot) => acts.change({watched: robot === "" ? null : +robot})),
-		fresh: button("New start", acts.fresh), random: button("Random genome", acts.random), value, part: make("b", "", NONE), parts: pick("Part", [["", "part ..."]], acts.choose),
+		fresh: button("New start", acts.fresh), random: button("Random genome", acts.random), value, part: make("b"), parts: pick("Part", [["", "part ..."]], acts.choose),
 		apply: button("Change", () => acts.alter(value.value)), cut: button("Silence or cut", () => acts.alter("")),
 		noise: button("Noise 0.1", () => acts.set("noise:0.1", "")), undo: button("Undo all", acts.undo),
-		move: Object.assign(button("Move bodies"), {disabled: true}), push: Object.assign(button("Push bodies"), {disabled: true}), body: pick("Body that keys move or push", [], null),
+		move: assign(button("Move bodies"), {disabled: true}), push: assign(button("Push bodies"), {disabled: true}), body: pick("Body that keys move or push", [], null),
 		chips: make("p", "chips"), hundred: button("100 fresh trials", acts.test), behavior: button("Behavior", () => acts.summarize(100)), summary: make("div"), verify: button("Verify", acts.verify),
-		configuration: make("pre", "", script.config), earned: make("p"), status: make("p", "soft"),
+		configuration: make("pre"), earned: make("p"), status: make("p", "soft"),
 	};
 	const bar = (...names) => make("div", "bar", ...names.map((name) => own[name]));
 	const panel = make("section", "", make("h2", "", "Live"), bar("generation", "trial", "robot", "fresh", "random"), make("p", "", "Change: ", own.part),
@@ -241,7 +236,7 @@ async function hundred(individual, changed, counted, say) {
 		const {lesion, moves, pushes} = change;
 		const [key, whose] = [`${individual} ${JSON.stringify(change)}`, change === changed ? "with the change" : "intact"];
 		const by = moves?.[0] || pushes?.[0] ? 1 : 10;
-		for (let [first, successes, failed] = [0, 0, 0]; !counted.has(key); first += by) {
+		for (let first = 0, successes = 0, failed = 0; !counted.has(key); first += by) {
 			const request = by > 1 ? {do: "fresh", individual, lesion, config: change.config, seed: 1, first, count: by}
 				: {do: "film", individual, trial: {fresh: {number: first, seed: 1}}, ...change};
 			const answer = await answerOf(request, by > 1 ? undefined : "earned");
@@ -268,22 +263,24 @@ function offerParts(own, kinds) {
 
 // The buttons that undo a change.
 function chipsOf(state, show) {
-	const lesions = [...state.changes].map(([name, to]) => button(`${name}${to === "" ? "" : ` = ${to}`} ×`, () => (state.changes.delete(name), show())));
-	const set = [...state.settings].map(([key, value]) => button(`${key} = ${value} ×`, () => {
-		state.settings = new Map([...state.settings].filter(([other]) => other !== key));
+	const chips = (kind) => [...state[kind]].map(([name, to]) => button(`${name}${to && ` = ${to}`} ×`, () => {
+		state[kind] = new Map([...state[kind]].filter(([other]) => other !== name));
 		show();
 	}));
 	const hands = ["moves", "pushes"].flatMap((kind) => state[kind].map((one) => button(`${one.what} at ${one.time.toFixed(2)} s ×`, () => (state[kind] = state[kind].filter((other) => other !== one), show()))));
-	return [...lesions, ...set, ...hands];
+	return [...chips("changes"), ...chips("settings"), ...hands];
 }
+
+const isHandled = ({moves, pushes}) => moves[0] || pushes[0];
+const untold = ({what, time, ...rest}) => rest;
+// The moves and pushes as a request has them.
+const handsOf = ({moves, pushes}) => ({moves: moves.map(untold), pushes: pushes.map(untold)});
 
 // The changes as a request has them, or none.
 function changesOf(page, state) {
-	const moves = state.moves.map(({step, body, position, rotation}) => ({step, body, position, rotation}));
-	const pushes = state.pushes.map(({steps, body, point, force}) => ({steps, body, point, force}));
-	const lesion = listOf(state);
-	const config = state.settings.size ? configOf(page, state) : undefined;
-	return lesion || moves[0] || pushes[0] || config ? {lesion, moves, pushes, config} : null;
+	const {changes, settings} = state;
+	if (!changes.size && !settings.size && !isHandled(state)) return null;
+	return {lesion: listOf(state), ...handsOf(state), config: settings.size ? configOf(page, state) : undefined};
 }
 
 // Updates the controls.
@@ -297,7 +294,7 @@ function tellControls(own, state, about) {
 	own.trial.value = fresh ? "" : state.trial.number;
 	own.generation.value = state.individual;
 	own.verify.disabled = !!fresh || !known.length || state.watched !== null;
-	own.undo.disabled = !state.changes.size && !state.settings.size && !state.moves[0] && !state.pushes[0];
+	own.undo.disabled = !state.changes.size && !state.settings.size && !isHandled(state);
 }
 
 // Names the agent, the trial and the changes in the address, but no moved or pushed bodies.
@@ -321,8 +318,8 @@ async function behaviorOf(count, page, state, own, change) {
 	own.behavior.disabled = true;
 	const request = {individual: state.individual, watched: state.watched, ...changesOf(page, state) ?? {lesion: ""}};
 	// A mark opens a trial of this summary, also after other changes.
-	const kept = {...state, changes: new Map(state.changes)};
-	const open = (number) => change({...kept, changes: new Map(kept.changes), trial: {fresh: {number, seed: 1}}});
+	const kept = {...state};
+	const open = (number) => change({...kept, trial: {fresh: {number, seed: 1}}});
 	const {generation, name = ""} = about.individuals[state.individual];
 	const whose = about.individuals[1] ? `Generation ${generation}${name}. ` : "";
 	const found = await summarized(count, request, whose, own.summary, open).catch((error) => own.summary.replaceChildren(error.message));
@@ -370,21 +367,29 @@ async function runBoth(state, changes) {
 	return [intact, changed];
 }
 
+// Returns a function that is true while a new champion replaces nothing that was changed, chosen, or used in the last five seconds.
+function idleOf(page, state) {
+	let used = -5000;
+	for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"]) addEventListener(kind, () => (used = performance.now()), true);
+	return () => performance.now() - used > 5000 && state.individual === state.newest && !changesOf(page, state)
+		&& !document.querySelector(".setting.changed, #groups :focus, #settings :focus, #node :checked:nth-child(n + 2)");
+}
+
 // Attaches the panel. Returns a function that shows the whole trial.
 function attach(page, state, whole, player, open) {
 	const {about} = page.live;
 	const counted = new Map();
-	let [answer, turn, chosen] = [null, 0, ""];
+	let answer, turn = 0, chosen = "";
 	const set = (name, to) => {
 		const before = {...state};
 		state.changes = new Map(before.changes).set(name, to);
 		return show(before);
 	};
-	const change = (what) => {
+	const change = (what, steady) => {
 		// A count of successes belongs to one agent.
 		if (what.individual >= 0) own.earned.textContent = "";
-		Object.assign(state, what);
-		return show();
+		assign(state, what);
+		return show(undefined, steady);
 	};
 	// A part that cannot be changed so is not changed.
 	const settle = (changed) => {
@@ -393,10 +398,10 @@ function attach(page, state, whole, player, open) {
 		state.settings = changed;
 		return show(before);
 	};
-	const undo = () => (state.changes.clear(), Object.assign(state, {settings: new Map(), moves: [], pushes: []}), show());
+	const undo = () => (assign(state, {changes: new Map(), settings: new Map(), moves: [], pushes: []}), show());
 	const fresh = () => change({trial: {fresh: {number: (state.trial.fresh?.number ?? -1) + 1, seed: 1}}});
 	const test = () => testOf(page, state, own, counted);
-	const [draw, settings] = [drawing(page.live.script), settingsOf(page.live.script.config)];
+	const {script} = page.live, draw = drawing(script), settings = settingsOf(script.config);
 	const form = settingsForm(settings, settle);
 	const own = controlsOf(page, {form, random: () => random(), set, change, undo, fresh, choose, test, summarize: (count) => summarize(count), verify, alter: (to) => chosen && set(chosen, to)});
 	const say = (text) => (own.status.textContent = text);
@@ -404,7 +409,7 @@ function attach(page, state, whole, player, open) {
 
 	function choose(name) {
 		chosen = name;
-		own.part.textContent = name || NONE;
+		own.part.textContent = name || "a node or link of the network";
 		for (const one of ["apply", "cut", "value"]) own[one].disabled = !name;
 	}
 
@@ -415,8 +420,8 @@ function attach(page, state, whole, player, open) {
 	}
 
 	// Runs the trial intact and with changes, on one clock.
-	async function show(before = {...state}) {
-		const [mine, changes, {pushes, settings: given}] = [++turn, changesOf(page, state), state];
+	async function show(before = {...state}, steady = false) {
+		const mine = ++turn, changes = changesOf(page, state), {pushes, settings: given} = state;
 		marks();
 		say("runs ...");
 		try {
@@ -425,12 +430,13 @@ function attach(page, state, whole, player, open) {
 			form.take(given);
 			answer = intact;
 			page.trials.splice(0, 2, ...[intact, changed].filter(Boolean).map((one, i) => trialOf(page, one, i, i ? pushes : [])));
-			player.show(page.trials[0], page.trials[1]);
-			player.ask();
+			const {ended} = player;
+			player.show(page.trials[0], page.trials[1], steady);
+			if (steady && ended) player.replay();
 			say(changed ? `With the change: ${earnedBy(changed)}.` : "");
 		} catch (error) {
 			// An invalid change is undone.
-			Object.assign(state, before);
+			assign(state, before);
 			marks();
 			say(error.message);
 		}
@@ -454,9 +460,8 @@ function attach(page, state, whole, player, open) {
 	}
 
 	// Shows the first of further individuals, with a name for each.
-	const showMore = async (more, names, origin = "evolved") =>
-		change({individual: await included(about, more, names, origin), trial: {number: state.trial.number ?? 0}});
-	const random = () => draw().then(([individual, name]) => showMore([individual], [name], "random"), (error) => say(error.message));
+	const showMore = async (more, names, origin) => change({individual: state.newest = await included(about, more, names, origin)}, true);
+	const random = () => draw().then(async ([individual, name]) => change({individual: await included(about, [individual], [name], "random")}), (error) => say(error.message));
 
 	addressed(player, state, about, change);
 	const {put, push} = movable(page, player, state, own, show, say);
@@ -465,8 +470,8 @@ function attach(page, state, whole, player, open) {
 	answerOf({do: "names"}).then((kinds) => offerParts(own, kinds), (error) => say(error.message));
 	choose("");
 	marks();
-	const {run, rows, mark} = evolutionOf(page, open, showMore);
+	const {run, rows, mark} = evolutionOf(page, open, showMore, idleOf(page, state));
 	const kept = keeping(page, state, about, mark, say, form.element);
-	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), settle: (some) => settle(new Map(Object.entries(some))), random, keep: kept.act, test, summarize, verify};
+	farsa.live = {evolve: run, rows, put: (move) => put(move, page.trials[0]), push: (force) => push(force, page.trials[0]), set, undo, start: (trial) => change({trial}), settle: (some) => settle(new Map(entries(some))), random, keep: kept.act, test, summarize, verify};
 	return begin;
 }

@@ -18,10 +18,12 @@ const root = document.documentElement;
 const theme = () => root.dataset.theme;
 let colors = {};
 const colorOf = (name) => colors[name] ??= getComputedStyle(root).getPropertyValue(name).trim();
-const prefers = (what) => matchMedia(`(prefers-${what})`);
 const short = (x, unit) => `${+x.toPrecision(2)} ${unit}`;
 const length = (m) => (m < 1e-3 ? short(m*1e3, "mm") : m < 1 ? short(m*100, "cm") : short(m, "m"));
-const options = (some) => some.map(([value, text]) => Object.assign(make("option", "", text), {value}));
+const entitled = (one, name) => (one.setAttribute("aria-label", name), one);
+const setPressed = (one, on) => one.setAttribute("aria-pressed", on);
+const isPressed = (one) => one.getAttribute("aria-pressed") === "true";
+const options = (some) => some.map(([value, text]) => assign(make("option", "", text), {value}));
 
 function fail(text, remedy = " Make it again with farsa replay --html.") {
 	farsa.error = text;
@@ -49,7 +51,7 @@ function openConsole(player, trials) {
 		tick: {get: () => floor(player.tick)}, time: {get: () => player.now}, ticks: {get: () => player.clock.ticks},
 		view: {get: () => (player.camera.top ? "top" : "free")}, speed: {get: () => player.speed, set: (to) => player.setSpeed(to)},
 	});
-	Object.assign(farsa, {
+	assign(farsa, {
 		trials,
 		seek: (to) => player.seek(to), play: () => player.play(), pause: () => player.pause(), setView: (name) => player.setView(name), follow: (name) => player.follow(name),
 		show: of((trial, other) => player.show(trial, other == null ? null : trialOf(other))),
@@ -113,14 +115,16 @@ function listen(acts) {
 	};
 }
 
-// Waits until a picture is visible: it is drawn for the next frame and on the screen by the third. A hidden page draws nothing.
+// Waits until a picture is visible: it is drawn for the next frame and on the screen by the third. A hidden page draws nothing, and
+// neither does a page in a frame out of view, which does not know that it is. These wait for three seconds.
 const seen = () => new Promise((done) => {
-	const frames = (n) => (n && !document.hidden ? requestAnimationFrame(() => frames(n - 1)) : done());
+	setTimeout(done, 3e3);
+	const frames = (n) => (n ? requestAnimationFrame(() => frames(n - 1)) : done());
 	frames(3);
 });
 
 // The moment in the address, such as `#trial=1&t=2.0`.
-const momentOf = () => Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
+const momentOf = () => fromEntries(new URLSearchParams(location.hash.slice(1)));
 
 // Shows the moment in the address. Returns false if there is none.
 async function visit(player) {
@@ -142,7 +146,7 @@ async function main() {
 	openConsole(player, trials);
 	$("title").textContent = page.title;
 	$("record").hidden = !window.MediaRecorder;
-	const dark = prefers("color-scheme: dark");
+	const dark = matchMedia("(prefers-color-scheme: dark)");
 	(dark.onchange = () => player.setTheme(dark.matches ? "dark" : "light"))();
 	$("app").hidden = false;
 	// The page is complete. A starting worker is no error.
@@ -161,11 +165,11 @@ async function main() {
 	else player.fill();
 	farsa.ready = true;
 	const visited = await visit(player);
-	window.onhashchange = () => visit(player);
-	if (!visited && !prefers("reduced-motion: reduce").matches) player.play();
+	onhashchange = () => visit(player);
+	if (!visited) player.replay();
 }
 
-window.onerror = (message) => fail(`the viewer failed (${message})`);
+onerror = (message) => fail(`the viewer failed (${message})`);
 document.addEventListener("DOMContentLoaded", () => {
 	main().catch((error) => {
 		if (error instanceof Unsupported) fail(error.message, "");

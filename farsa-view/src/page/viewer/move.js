@@ -8,7 +8,7 @@ function weightOf({shapes}, body) {
 	const thing = shapes.find((shape) => shape.body === body).role === "thing";
 	const own = shapes.filter((shape) => (thing ? shape.body === body : shape.role === "robot" && shape.body >= 0));
 	return own.reduce((sum, {kind, half, radius: r, half_length: long = 0}) => {
-		const round = 2*Math.PI*r*r*long + (kind === "cylinder" ? 0 : 4/3*Math.PI*r**3);
+		const round = 2*PI*r*r*long + (kind === "cylinder" ? 0 : 4/3*PI*r**3);
 		return sum + 1000*(half ? 8*half[0]*half[1]*half[2] : round);
 	}, 0);
 }
@@ -40,7 +40,7 @@ function carry(player, grip, own, {put, push, say}) {
 			const {long, newtons} = player.camera.arrow();
 			held.force = mul(way, weightOf(trial, body)*4/PUSH**2);
 			trial.pull = {pair: [trial.bodies[body], "outside"], point, force: mul(way, newtons/long)};
-		} else trial.held = Object.assign(held, {position: add(add(point, way), offset)});
+		} else trial.held = assign(held, {position: add(add(point, way), offset)});
 		player.ask();
 	}
 
@@ -87,7 +87,7 @@ function carry(player, grip, own, {put, push, say}) {
 	// Moves along the sides of the picture, level with the ground, and up.
 	function press(event) {
 		const {key, target, shiftKey} = event;
-		const [[right], up] = [player.camera.axes(), [0, 0, 1]];
+		const [right] = player.camera.axes(), up = [0, 0, 1];
 		const ahead = cross(up, right);
 		const way = {ArrowLeft: mul(right, -1), ArrowRight: right, ArrowUp: ahead, ArrowDown: mul(ahead, -1), PageUp: up, PageDown: [0, 0, -1]}[key];
 		const other = {"[": -1, "]": 1}[key];
@@ -107,7 +107,7 @@ function carry(player, grip, own, {put, push, say}) {
 	}
 
 	for (const [name, act] of [["down", take], ["move", drag], ["up", release(true)], ["cancel", release(false)]]) views.addEventListener(`pointer${name}`, act, true);
-	window.addEventListener("keydown", press, true);
+	addEventListener("keydown", press, true);
 	own.body.onchange = () => leave(false);
 	return leave;
 }
@@ -122,9 +122,8 @@ Enter Esc   apply, cancel
 
 // Bodies can be dragged or pushed while the button is pressed. Returns functions for both.
 function movable(page, player, state, own, show, say) {
-	const [{about}, {move: moving, push: pushing}] = [page.live, own];
-	const on = (one) => one.getAttribute("aria-pressed") === "true";
-	const grip = () => (on(moving) ? "move" : on(pushing) ? "push" : "");
+	const {about} = page.live, {move: moving, push: pushing} = own;
+	const grip = () => (isPressed(moving) ? "move" : isPressed(pushing) ? "push" : "");
 	// Things first, then robots.
 	const {bodies, shapes} = page.trials[0];
 	const some = ["thing", "robot"].flatMap((role) => shapes.filter((shape) => shape.role === role && shape.body >= 0).map((shape) => shape.body));
@@ -133,8 +132,8 @@ function movable(page, player, state, own, show, say) {
 	for (const [one, other] of [[moving, pushing], [pushing, moving]]) {
 		one.onclick = () => {
 			leave(false);
-			one.setAttribute("aria-pressed", !on(one));
-			other.setAttribute("aria-pressed", false);
+			setPressed(one, !isPressed(one));
+			setPressed(other, false);
 			own.body.hidden = !grip();
 			say(grip() ? "Drag a body, or press arrows and then Enter." : "");
 		};

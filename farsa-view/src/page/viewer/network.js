@@ -46,6 +46,8 @@ function titleOf(over, say, valueOf) {
 	return over.links ? `${over.label}: ${say(over)}` : `${over.from.label} → ${over.to.label}: ${productOf(over, valueOf(over.from))}`;
 }
 
+const rowOf = (className, ...cells) => make("tr", className, ...cells.map((cell) => make("td", "", cell)));
+
 // The numbers of a node or link. `say` returns a node's present value as text, `valueOf` as a number.
 function aboutOf(chosen, links, say, valueOf) {
 	if (!chosen) return [make("p", "soft", "Point at a node or a link, or tap it, for its numbers.")];
@@ -55,8 +57,8 @@ function aboutOf(chosen, links, say, valueOf) {
 	}
 	const table = (head, here, there) => {
 		const some = links.filter((l) => l[here] === chosen).reverse();
-		const rows = some.slice(0, 6).map((l) => make("tr", "", make("td", "", l[there].label), make("td", "", signed(l.weight)), make("td", "", signed(l.weight*valueOf(l.from)))));
-		const heads = rows[0] ? [make("tr", "soft", make("td", "", ""), make("td", "", "weight"), make("td", "", "× activation"))] : [];
+		const rows = some.slice(0, 6).map((l) => rowOf("", l[there].label, signed(l.weight), signed(l.weight*valueOf(l.from))));
+		const heads = rows[0] ? [rowOf("soft", "", "weight", "× activation")] : [];
 		return make("table", "", make("caption", "", `${head} (${some.length})`), ...heads, ...rows);
 	};
 	return [
@@ -78,7 +80,7 @@ function paintLinks(c, links, some, alpha) {
 	const strongest = links.reduce((most, {weight, direct}) => (direct ? most : max(most, abs(weight))), 0) || 1;
 	for (const {weight, direct, curve: [x, y, ...rest]} of some) {
 		const part = direct ? 0.7 : abs(weight)/strongest;
-		Object.assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + (direct ? 1 : 2.4*part), strokeStyle: colorOf(direct ? "--soft" : weight < 0 ? "--a" : "--b")});
+		assign(c, {globalAlpha: alpha(part), lineWidth: 0.5 + (direct ? 1 : 2.4*part), strokeStyle: colorOf(direct ? "--soft" : weight < 0 ? "--a" : "--b")});
 		c.beginPath();
 		c.moveTo(x, y);
 		c.bezierCurveTo(...rest);
@@ -94,14 +96,14 @@ function paintNode(c, {x, y}, lit, fill) {
 	c.arc(x, y, lit ? 7.5 : 6, 0, 7);
 	c.fillStyle = fill;
 	c.fill();
-	Object.assign(c, {lineWidth: lit ? 2.5 : 1, strokeStyle: lit ? ink : soft});
+	assign(c, {lineWidth: lit ? 2.5 : 1, strokeStyle: lit ? ink : soft});
 	c.stroke();
 }
 
 // Writes a node's name next to it, on the left for the first column.
 function paintName(c, {x, y, layer, label: text}, width, ink) {
 	text = fitted(c, text, (layer ? width - x : x) - 12);
-	Object.assign(c, {lineWidth: 4, strokeStyle: colorOf("--panel"), fillStyle: ink, textAlign: layer ? "left" : "right"});
+	assign(c, {lineWidth: 4, strokeStyle: colorOf("--panel"), fillStyle: ink, textAlign: layer ? "left" : "right"});
 	for (const way of ["strokeText", "fillText"]) c[way](text, x + (layer ? 11 : -11), y + 0.5);
 }
 
@@ -155,7 +157,7 @@ function graphOf() {
 		const height = max(200, max(...columns.map((column) => column.length))*16 + 30);
 		ratio = min(2, devicePixelRatio);
 		canvas.style.height = `${height}px`;
-		Object.assign(canvas, {width: round(width*ratio), height: round(height*ratio)});
+		assign(canvas, {width: round(width*ratio), height: round(height*ratio)});
 		c.font = LABEL;
 		const room = (column) => min(width*0.37, max(...column.map((n) => c.measureText(n.label).width))) + 16;
 		const left = room(columns[0]);
@@ -169,7 +171,7 @@ function graphOf() {
 			});
 		});
 		for (const link of links) link.curve = curveOf(link);
-		back = Object.assign(make("canvas"), {width: canvas.width, height: canvas.height});
+		back = assign(make("canvas"), {width: canvas.width, height: canvas.height});
 		const hidden = plain(back);
 		hidden.setTransform(ratio, 0, 0, ratio, 0, 0);
 		paintLinks(hidden, links, links, (part) => 0.03 + 0.72*part**2.5);
@@ -192,7 +194,7 @@ function graphOf() {
 		c.drawImage(back, 0, 0);
 		c.setTransform(ratio, 0, 0, ratio, 0, 0);
 		paintLinks(c, links, chosen ? chosen.links || [chosen] : [], (part) => 0.25 + 0.75*part);
-		Object.assign(c, {font: LABEL, textBaseline: "middle"});
+		assign(c, {font: LABEL, textBaseline: "middle"});
 		const [ink, soft, panel] = ["--ink", "--soft", "--panel"].map(colorOf);
 		for (const node of nodes) {
 			const lit = chosen && [chosen, chosen.from, chosen.to].includes(node);

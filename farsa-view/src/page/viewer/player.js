@@ -2,7 +2,7 @@
 
 class Player {
 	constructor({trials, view, made_by: maker}) {
-		Object.assign(this, {maker, trials, shown: [trials[0]], led: false, clock: trials[0], tick: 0, speed: 1, asked: false, before: 0, views: []});
+		assign(this, {maker, trials, shown: [trials[0]], led: false, clock: trials[0], tick: 0, speed: 1, asked: false, before: 0, views: []});
 		this.camera = new Camera(view === "top");
 		this.visible = {forces: true, rays: true, points: false, trails: view === "top"};
 		this.strips = stripsOf((part) => {
@@ -15,6 +15,10 @@ class Player {
 
 	get now() {
 		return this.clock.timeAt(this.tick);
+	}
+
+	get ended() {
+		return this.tick >= this.clock.ticks - 1;
 	}
 
 	// Trials are synchronized by time. A shorter one rests at its end.
@@ -47,7 +51,7 @@ class Player {
 		camera.carry(this.followedPlace());
 		shown.forEach((trial, i) => this.views[i].draw(trial, this.tickOf(trial), this.visible));
 		this.film?.take();
-		if (farsa.playing && this.tick >= clock.ticks - 1) this.pause();
+		if (farsa.playing && this.ended) this.pause();
 		const tick = floor(this.tick);
 		$("slider").value = tick;
 		const text = clockOf(clock, tick);
@@ -66,10 +70,16 @@ class Player {
 	}
 
 	play() {
-		if (this.tick >= this.clock.ticks - 1) this.tick = 0;
+		if (this.ended) this.tick = 0;
 		this.before = performance.now();
 		farsa.playing = true;
 		this.marks();
+	}
+
+	// Plays from the start, but not where less motion is preferred.
+	replay() {
+		this.seek(0);
+		if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
 	}
 
 	// Records until the pause or the end of the trial.
@@ -178,7 +188,7 @@ class Player {
 
 	attend(name) {
 		const body = this.shown[0].bodies.indexOf(name);
-		Object.assign(this.camera, {followed: body < 0 ? null : body, carried: null});
+		assign(this.camera, {followed: body < 0 ? null : body, carried: null});
 		$("follow").value = body < 0 ? "" : name;
 		this.ask();
 	}
@@ -186,8 +196,8 @@ class Player {
 	// Updates the states of buttons.
 	marks() {
 		$("play").classList.toggle("playing", farsa.playing);
-		$("play").setAttribute("aria-label", farsa.playing ? "Pause" : "Play");
-		for (const [name, on] of Object.entries({...this.visible, record: !!this.film})) $(name).setAttribute("aria-pressed", on);
+		entitled($("play"), farsa.playing ? "Pause" : "Play");
+		for (const [name, on] of entries({...this.visible, record: !!this.film})) setPressed($(name), on);
 		$("camera").value = this.camera.top ? "top" : this.camera.name === "top" ? "overview" : this.camera.name;
 		this.ask();
 	}
@@ -214,13 +224,13 @@ class Player {
 		while (this.views.length < count) this.views.push(viewOf(this.camera, () => this.ask()));
 	}
 
-	show(a, b) {
-		this.place(a, b);
+	show(a, b, steady) {
+		this.place(a, b, steady);
 		this.fill();
 	}
 
-	// Places trials in the views.
-	place(a, b) {
+	// Places trials in the views. A steady camera stays.
+	place(a, b, steady) {
 		this.shown = [...new Set([a, b || a])];
 		const {shown} = this;
 		const two = shown.length > 1;
@@ -244,7 +254,7 @@ class Player {
 		$("follow").hidden = !moving.length;
 		this.attend(a.bodies[this.led ? this.camera.followed : a.travels?.body] ?? "");
 		$("network").hidden = !a.network;
-		this.frameCamera();
+		if (!steady) this.frameCamera();
 		this.marks();
 	}
 
@@ -278,5 +288,5 @@ function trackOf(trial, clock) {
 function factsOf(trial, mark) {
 	return make("div", "", make("h2", mark, trial.name),
 		make("dl", "", ...trial.facts.flatMap(([name, text]) => [make("dt", "", name), make("dd", "", text)])),
-		make("p", "soft", `Positions within ${length(trial.position_unit/2)}${trial.has.forces ? `, forces within ${short(trial.force_unit/2, "N")}` : ""} of what was recorded; for channels point at their names.`));
+		make("p", "soft", `Positions within ${length(trial.position_unit/2)}${trial.has.forces ? `, forces within ${short(trial.force_unit/2, "N")}` : ""}. For channels point at their names.`));
 }

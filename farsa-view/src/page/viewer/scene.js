@@ -8,7 +8,7 @@ const rgb = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16)/25
 // Meshes with fewer corners around, `n`, are used for small shapes.
 function meshes(n) {
 	const vertex = ([r, z, nr, nz, end], j, n) => {
-		const [c, s] = [cos(2*Math.PI*(j + 0.5)/n), sin(2*Math.PI*(j + 0.5)/n)];
+		const [c, s] = [cos(2*PI*(j + 0.5)/n), sin(2*PI*(j + 0.5)/n)];
 		return [r*c, r*s, z, nr*c, nr*s, nz, end];
 	};
 	// Rows: radius, z, normal's radius, normal's z, end.
@@ -18,7 +18,7 @@ function meshes(n) {
 	}).flat());
 	const quarter = n/4;
 	const arc = list(2*quarter + 2, (k) => {
-		const a = (k - (k <= quarter ? quarter : quarter + 1))*Math.PI/2/quarter;
+		const a = (k - (k <= quarter ? quarter : quarter + 1))*PI/2/quarter;
 		return [cos(a), sin(a), cos(a), sin(a), k <= quarter ? -1 : 1];
 	});
 	return {
@@ -211,7 +211,7 @@ function metAt({shape: {kind, half, radius: r, half_length: long = 0}, origin, r
 	// The distances within a ball, or without z in an endless cylinder, NaN for a miss.
 	const round = (o, d) => {
 		const [a, b] = [max(dot(d, d), 1e-12), dot(o, d)];
-		const s = Math.sqrt(b*b - a*(dot(o, o) - r*r));
+		const s = sqrt(b*b - a*(dot(o, o) - r*r));
 		return [(-b - s)/a, (s - b)/a];
 	};
 	const both = (...spans) => {
@@ -242,11 +242,11 @@ class Scene {
 
 	build() {
 		const {gl} = this;
-		this.program = programOf(gl);
-		gl.useProgram(this.program);
-		const names = list(gl.getProgramParameter(this.program, gl.ACTIVE_UNIFORMS), (i) => gl.getActiveUniform(this.program, i).name);
-		this.places = Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(this.program, name)]));
-		this.solids = [16, 32, 96].map((n) => Object.fromEntries(Object.entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
+		const program = programOf(gl);
+		gl.useProgram(program);
+		const names = list(gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS), (i) => gl.getActiveUniform(program, i).name);
+		this.places = fromEntries(names.map((name) => [name, gl.getUniformLocation(program, name)]));
+		this.solids = [16, 32, 96].map((n) => fromEntries(entries(meshes(n)).map(([name, data]) => [name, solidOf(gl, data)])));
 		this.made = new WeakMap();
 		this.shadows = shadowsOf(gl);
 		gl.uniform1i(this.places.depths, 1);
@@ -256,7 +256,7 @@ class Scene {
 
 	set(values) {
 		const {gl, places} = this;
-		for (const [name, value] of Object.entries(values)) {
+		for (const [name, value] of entries(values)) {
 			const at = places[name];
 			if (value.length === 16) gl.uniformMatrix4fv(at, false, value);
 			else gl[`uniform${value.length || 1}fv`](at, value.length ? value : [value]);
@@ -264,13 +264,9 @@ class Scene {
 	}
 
 	mesh(kind, origin, rotation, size, color, stretch = 0) {
-		const {gl, places} = this;
+		const {gl} = this;
 		const {array, count} = kind.solid ? this.facets(kind) : this.solids[(size[0] > this.coarse) + (size[0] > 4*this.coarse)][kind];
-		gl.uniform3fv(places.origin, origin);
-		gl.uniform4fv(places.rotation, rotation);
-		gl.uniform3fv(places.size, size);
-		gl.uniform4fv(places.color, color);
-		gl.uniform1f(places.stretch, stretch);
+		this.set({origin, rotation, size, color, stretch});
 		gl.bindVertexArray(array);
 		gl.drawArrays(gl.TRIANGLES, 0, count);
 	}
@@ -322,7 +318,7 @@ class Scene {
 		const middle = middleOf(trial.bounds);
 		// Up to a radius of 20 pixels the error of a coarse mesh is below half a pixel, and so is that of a finer one up to 80.
 		this.coarse = 40*seen/this.canvas.height;
-		Object.assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
+		assign(this, {camera, eye, matrix: lens, middle, reach: max(9*radius, 3*seen), thin: seen*0.005, placed: placedAt(trial, tick)});
 	}
 
 	bindMap(map) {

@@ -3,7 +3,7 @@
 // The settings in the text of a configuration, each with the number of its line. Those of a strategy change no trial.
 function settingsOf(config) {
 	const found = [];
-	let [section, about, inDefinition] = ["", "", false];
+	let section = "", about = "", inDefinition;
 	config.split("\n").forEach((line, at) => {
 		const [, name, value] = /^([\w-]+) = (.*)$/.exec(line) ?? [];
 		if (inDefinition) inDefinition = !line.endsWith("'''");
@@ -34,13 +34,13 @@ function seedOf(config) {
 
 // The row of a setting. A press of Enter applies all.
 function settingRow({key, name, value, doc, allowed}, apply) {
-	const field = allowed.startsWith("true or false") ? pick(key, [["true", "true"], ["false", "false"]], () => {}) : make("input");
-	field.setAttribute("aria-label", key);
+	const field = allowed.startsWith("true or false") ? pick(key, [["true", "true"], ["false", "false"]], () => {}) : entitled(make("input"), key);
 	field.value = value;
 	field.spellcheck = false;
 	const row = make("label", "setting", make("span", "", name), field, make("small", "soft", `${doc} [${allowed}]`));
 	const mark = () => row.classList.toggle("changed", field.value.trim() !== value);
-	field.onkeydown = (event) => event.key === "Enter" && (event.preventDefault(), apply());
+	// A handler that returns false would refuse the key.
+	field.onkeydown = ({key}) => void (key === "Enter" && apply());
 	field.addEventListener("input", mark);
 	const set = (to) => ((field.value = to ?? value), mark());
 	return {key, row, field, set, words: `${key} ${doc}`.toLowerCase(), given: () => field.value.trim(), value};
@@ -53,8 +53,7 @@ function settingsForm(settings, act) {
 	const apply = () => act(given());
 	const groups = [...new Set(settings.map(({section}) => section))].map((section) =>
 		make("details", "group", make("summary", "", section), ...rows.filter((_, i) => settings[i].section === section).map(({row}) => row)));
-	const search = Object.assign(make("input"), {type: "search", placeholder: "gravity, friction, noise ..."});
-	search.setAttribute("aria-label", "Search settings");
+	const search = entitled(assign(make("input"), {type: "search", placeholder: "gravity, friction, noise ..."}), "Search settings");
 	search.oninput = () => {
 		const words = search.value.toLowerCase().split(/\s+/);
 		for (const {row, words: own} of rows) row.hidden = !words.every((word) => own.includes(word));
@@ -64,7 +63,7 @@ function settingsForm(settings, act) {
 		}
 	};
 	const element = make("details", "", make("summary", "", "Settings"), search, ...groups,
-		make("div", "bar", Object.assign(button("Run with these settings", apply), {id: "apply"}), button("Original settings", () => act(new Map()))));
+		make("div", "bar", assign(button("Run with these settings", apply), {id: "apply"}), button("Original settings", () => act(new Map()))));
 	element.id = "settings";
 	element.hidden = !rows[0];
 	return {element, take: (changed) => rows.forEach(({key, set}) => set(changed.get(key)))};

@@ -22,12 +22,12 @@ function show({words, low, high, whole}, value) {
 	if (whole) return value.toFixed(0);
 	// A nearly constant value has no more digits than others.
 	const span = max(high - low, 1e-3*max(abs(low), abs(high))) || 1;
-	const text = value.toFixed(min(6, max(0, Math.ceil(2.5 - Math.log10(span)))));
+	const text = value.toFixed(min(6, max(0, ceil(2.5 - log10(span)))));
 	return +text ? text : text.replace("-", "");
 }
 
 // An end of a scale with the digits that its span requires.
-const bound = (x, span) => +x.toFixed(min(9, max(0, Math.ceil(2 - Math.log10(max(span, 1e-3*abs(x)))))));
+const bound = (x, span) => +x.toFixed(min(9, max(0, ceil(2 - log10(max(span, 1e-3*abs(x)))))));
 
 // The scale of values from `low` to `high`, large enough to hide rounding, with constant values in its middle.
 function scaleOf(low, high) {
@@ -46,7 +46,7 @@ function runs(values) {
 }
 
 function make(tag, className = "", ...children) {
-	const made = Object.assign(document.createElement(tag), {className});
+	const made = assign(document.createElement(tag), {className});
 	made.append(...children);
 	return made;
 }
@@ -64,7 +64,7 @@ function fitted(c, text, room) {
 // Painters of a strip. `x` is the place of a tick, `tall` and `top` are the height and the top of the trial's part, all in pixels.
 // `ratio` is the number of pixels per CSS pixel.
 function paintBands(c, {values}, {words}, {x, tall, top, ratio}) {
-	Object.assign(c, {font: `600 ${12*ratio}px system-ui, sans-serif`, textBaseline: "middle"});
+	assign(c, {font: `600 ${12*ratio}px system-ui, sans-serif`, textBaseline: "middle"});
 	for (const [t, after, color, value] of runs(values)) {
 		const wide = x(min(after, values.length - 1)) - x(t);
 		c.fillStyle = color;
@@ -80,7 +80,7 @@ function paintHeat(c, {values}, {low, high}, {x, tall, top, ratio, width}) {
 	const image = new ImageData(values.length, 1);
 	const table = list(256, (k) => [...heatOf({low, high}, low + span*k/255), 255]);
 	values.forEach((value, t) => image.data.set(table[min(255, max(0, round((value - low)/span*255)))] || [], 4*t));
-	const line = Object.assign(make("canvas"), {width: values.length, height: 1});
+	const line = assign(make("canvas"), {width: values.length, height: 1});
 	plain(line).putImageData(image, 0, 0);
 	c.imageSmoothingEnabled = values.length > width;
 	c.drawImage(line, x(0), top, x(values.length - 1) - x(0) + 1, tall - ratio/2);
@@ -90,7 +90,7 @@ function paintLine(c, {values}, {low, high}, {x, ratio, width, height, color}) {
 	const y = (value) => 3*ratio + (high - value)/(high - low || 1)*(height - 6*ratio);
 	c.fillStyle = colorOf("--line");
 	if (low < 0 && high > 0) c.fillRect(0, round(y(0)), width, ratio);
-	Object.assign(c, {strokeStyle: colorOf(color), lineWidth: 1.5*ratio, lineJoin: "round"});
+	assign(c, {strokeStyle: colorOf(color), lineWidth: 1.5*ratio, lineJoin: "round"});
 	c.beginPath();
 	// Missing values interrupt the line.
 	values.forEach((value, t) => c[Number.isNaN(values[t - 1] ?? NaN) ? "moveTo" : "lineTo"](x(t), y(value)));
@@ -105,7 +105,7 @@ function paintStrip(row, trials, from, to) {
 	const painted = `${width} ${height} ${theme()}`;
 	if (row.painted === painted || !width) return;
 	row.painted = painted;
-	Object.assign(canvas, {width, height});
+	assign(canvas, {width, height});
 	const c = plain(canvas);
 	const shown = channels.filter(Boolean);
 	channels.forEach((channel, i) => {
@@ -156,7 +156,7 @@ function wide(size, texts) {
 
 function stripsOf(seek) {
 	const [groups, closed] = [$("groups"), new Set()];
-	let [rows, trials, from, to, ticks, part] = [[], [], 0, 1];
+	let rows = [], trials = [], from = 0, to = 1, ticks, part;
 	const watch = new IntersectionObserver((entries) => {
 		for (const {target, isIntersecting} of entries) {
 			target.row.near = isIntersecting;
@@ -189,7 +189,7 @@ function stripsOf(seek) {
 		const own = rows.slice(-names.length);
 		const values = own.flatMap(({scale}) => scale.words || [scale.low, scale.high].map((end) => show(scale, end)));
 		const columns = {w: trials.length*(wide(13, values) + 14) - 14, u: wide(12, own.map(({unit}) => unit)), s: min(122, wide(12, own.map(({told}) => told)))};
-		for (const [name, width] of Object.entries(columns)) made.style.setProperty(`--${name}`, `${width}px`);
+		for (const [name, width] of entries(columns)) made.style.setProperty(`--${name}`, `${width}px`);
 		made.dataset.group = group;
 		const folded = () => {
 			body.hidden = closed.has(group);

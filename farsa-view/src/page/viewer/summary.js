@@ -5,18 +5,19 @@ const SHOWN = {true: "#009e73", false: "#d55e00", null: "#0072b2"};
 
 function drawn(tag, attributes, ...children) {
 	const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-	for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+	for (const [name, value] of entries(attributes)) made.setAttribute(name, value);
 	made.append(...children);
 	return made;
 }
 
+const meanOf = (values) => values.reduce((sum, value) => sum + value, 0)/values.length;
+
 // Mean time in each phase, and the number of trials that reach it.
 function phasesOf(trials) {
 	const {words = []} = trials[0];
-	const mean = (values) => values.reduce((sum, value) => sum + value, 0)/values.length;
 	return words.map((word, i) => {
 		const times = trials.map(({counts, step}) => counts[i]*step);
-		return {word, seconds: mean(times), reached: times.filter((time) => time > 0).length};
+		return {word, seconds: meanOf(times), reached: times.filter((time) => time > 0).length};
 	});
 }
 
@@ -27,8 +28,7 @@ function phaseTable(phases, count) {
 		bar.style.cssText = `width:${100*seconds/longest}%;background:${WORDS[i%WORDS.length]}`;
 		return make("tr", "", make("td", "", word), make("td", "wide", bar), make("td", "", `${seconds.toFixed(2)} s`), make("td", "", `${reached} of ${count}`));
 	});
-	const head = make("tr", "soft", ...["phase", "", "mean time", "reached"].map((text) => make("td", "", text)));
-	return make("table", "phases", head, ...rows);
+	return make("table", "phases", rowOf("soft", "phase", "", "mean time", "reached"), ...rows);
 }
 
 // The first of the bodies whose starts differ most between trials, and the two axes along which it does, or null.
@@ -72,7 +72,7 @@ async function summarized(count, request, whose, place, open) {
 	}
 	const successes = trials.filter(({success}) => success).length;
 	const finished = trials.filter(({fitness}) => fitness !== null);
-	const mean = finished.reduce((sum, {fitness}) => sum + fitness, 0)/finished.length;
+	const mean = meanOf(finished.map(({fitness}) => fitness));
 	const share = trials[0].success === null ? "no criterion of success" : `success in ${successes} of ${count} fresh trials`;
 	const failed = count - finished.length;
 	const text = failed === count ? `all ${count} fresh trials broke down` : `${share}, mean fitness ${shortest(mean)}${failed ? `, ${failed} broke down` : ""}`;

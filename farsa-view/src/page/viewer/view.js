@@ -50,13 +50,13 @@ function viewOf(camera, ask) {
 	let seen;
 	const size = () => {
 		const [width, height] = [element.clientWidth, element.clientHeight].map((x) => max(1, round(x*min(2, devicePixelRatio))));
-		if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});
+		if (canvas.width !== width || canvas.height !== height) assign(canvas, {width, height});
 		ask();
 	};
 	new ResizeObserver(size).observe(element);
 
 	function set(trial, mark) {
-		canvas.setAttribute("aria-label", `Scene of ${trial.name}`);
+		entitled(canvas, `Scene of ${trial.name}`);
 		// The head of the page names a single trial.
 		caption.replaceChildren(...mark ? [make("b", mark, trial.name)] : [], note);
 		labels.replaceChildren(...trial.points.map((name) => make("span", "", name)));
