@@ -14,7 +14,7 @@ pub use crate::experiment::{
     mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
 };
 pub use crate::limits::Limits;
-pub use crate::live::LiveSession;
+pub use crate::live::{LiveModule, LiveSession};
 pub use crate::ranks::{Alone, Ranks};
 pub use crate::run::{
     ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, LeftOut, Part, ReadExperiment, Template, Vocabulary,

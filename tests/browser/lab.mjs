@@ -1,10 +1,12 @@
 // Tests the page of `farsa lab` in Chromium: from an empty folder to a tested run, with the mouse, on a phone and by keys alone.
 //
-//   node tests/browser/lab.mjs ADDRESS [SCREENSHOTS]
+//   node tests/browser/lab.mjs ADDRESS [SCREENSHOTS [FOLDER [VISITS]]]
 //
-// ADDRESS is what `farsa lab` prints for an empty folder. Prints a line per check and exits with 1 if one failed.
+// ADDRESS is what `farsa lab` prints for an empty FOLDER, in which saved commands are run by the `farsa` of PATH. VISITS is a part of the
+// names of the visits. Prints a line per check and exits with 1 if one failed.
 
-import { mkdirSync, writeFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readdirSync, readFileSync, rmSync, utimesSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { KEY, startDriver } from "./webdriver.mjs";
@@ -14,7 +16,7 @@ setTimeout(() => {
   process.exit(1);
 }, 1_200_000).unref();
 
-const [address, shots] = process.argv.slice(2);
+const [address, shots, folder, visits = ""] = process.argv.slice(2);
 let failed = 0;
 if (shots) mkdirSync(shots, { recursive: true });
 
@@ -23,6 +25,9 @@ function check(name, ok, detail = "") {
   if (!ok) failed++;
 }
 
+const CHAMPION = 'iframe[title^="Champion"]';
+const TRIAL = 'iframe[title^="Trial"]';
+
 // A visitor who uses the page by a mouse or by keys alone.
 class Visitor {
   constructor(browser, name, { keys = false } = {}) {
@@ -30,16 +35,33 @@ class Visitor {
   }
 
   async picture(name) {
-    if (shots) writeFileSync(join(shots, `${this.name}-${name}.png`), await this.browser.screenshot());
+    if (!shots) return;
+    // On a busy machine Chromium may not take a picture in time. This is no fault of the page.
+    const picture = await this.browser.screenshot().catch((error) => console.log(`no picture of ${this.name}-${name}: ${error.message}`));
+    if (picture) writeFileSync(join(shots, `${this.name}-${name}.png`), picture);
   }
 
-  // Moves the focus to an element, by Tab as often as it takes.
+  // Pauses the trial of a frame. Chromium may not take a picture of a busy frame in time.
+  async rest(selector) {
+    await this.within(selector, () => this.browser.run(() => farsa.pause()));
+    await sleep(500);
+  }
+
+  // Moves the focus to an element, by Tab in its direction as often as it takes.
   async reach(selector) {
     await this.browser.until((s) => [...document.querySelectorAll(s)].some((e) => e.checkVisibility() && !e.disabled), selector);
     if (!this.byKeys) return;
-    for (let count = 0; count < 400; count++) {
-      if (await this.browser.run((s) => document.activeElement?.matches(s), selector)) return;
-      await this.browser.keys(KEY.tab);
+    for (let tries = 0; tries < 60; tries++) {
+      const steps = await this.browser.run((s) => {
+        const here = document.activeElement;
+        if (here.matches(s) && document.hasFocus()) return 0;
+        const places = [...document.querySelectorAll("a[href], button, input, select, textarea, summary, iframe, [tabindex]")].filter((e) => e.checkVisibility() && !e.disabled);
+        const steps = places.findIndex((e) => e.matches(s)) - places.indexOf(here);
+        // The number of places in a frame is unknown.
+        return here.matches("iframe") ? Math.sign(steps) * 20 : steps;
+      }, selector);
+      if (!steps) return;
+      await this.browser.keys(KEY.tab.repeat(Math.abs(steps)), steps < 0 ? KEY.shift : null);
     }
     throw new Error(`Tab does not reach ${selector}`);
   }
@@ -50,19 +72,37 @@ class Visitor {
       await this.browser.keys(key);
       return;
     }
-    const place = () => this.browser.run((s) => {
-      const element = [...document.querySelectorAll(s)].find((e) => e.checkVisibility() && !e.disabled);
-      element.scrollIntoView({ block: "center" });
-      const { left, top, width, height } = element.getBoundingClientRect();
-      return [left + width / 2, top + height / 2];
-    }, selector);
+    const place = async () => {
+      const [x, y] = await this.browser.run((s) => {
+        const element = [...document.querySelectorAll(s)].find((e) => e.checkVisibility() && !e.disabled);
+        const center = () => {
+          const { left, top, width, height } = element.getBoundingClientRect();
+          return [left + width / 2, top + height / 2];
+        };
+        // The scene of a narrow page covers what is behind it.
+        for (const block of ["center", "end"]) {
+          element.scrollIntoView({ block });
+          if (element.contains(document.elementFromPoint(...center()))) break;
+        }
+        return center();
+      }, selector);
+      // A message covers the lower end of a narrow page for some seconds.
+      return this.frame ? this.outside((frame) => this.browser.until((frame, x, y) => {
+        const element = document.querySelector(frame);
+        const place = () => element.getBoundingClientRect();
+        scrollBy(0, place().top + y - innerHeight / 2);
+        const at = [place().left + x, place().top + y];
+        return document.elementFromPoint(...at) === element && at;
+      }, frame, x, y)) : [x, y];
+    };
     // A page that grows moves its parts.
     let at = await place();
     for (let last; last !== String(at); at = await place()) {
       last = String(at);
       await sleep(100);
     }
-    await this.browser.drag([at]);
+    // Places are those of the outer page.
+    await (this.frame ? this.outside(() => this.browser.drag([at])) : this.browser.drag([at]));
   }
 
   // Replaces the text of a field.
@@ -73,6 +113,63 @@ class Visitor {
     await this.browser.keys(text);
   }
 
+  // Presses the visible button with a text.
+  async push(text) {
+    await this.browser.until((text) => {
+      const button = [...document.querySelectorAll("button")].find((one) => one.textContent === text && one.checkVisibility() && !one.disabled);
+      button?.setAttribute("data-next", "");
+      return !!button;
+    }, text);
+    await this.press("[data-next]");
+    await this.browser.run(() => document.querySelector("[data-next]")?.removeAttribute("data-next"));
+  }
+
+  // Chooses an option of a list by its value, with arrows.
+  async choose(selector, value) {
+    for (let tries = 0; tries < 5; tries++) {
+      if (this.byKeys) await this.reach(selector);
+      else await this.press(selector);
+      const way = await this.browser.run((s, value) => {
+        const list = document.querySelector(s);
+        return [...list.options].findIndex((option) => option.value === value) - list.selectedIndex;
+      }, selector, value);
+      await this.browser.keys((way > 0 ? KEY.down : KEY.up).repeat(Math.abs(way)));
+      // An open list takes Enter.
+      if (!this.byKeys) await this.browser.keys(KEY.enter);
+      await sleep(100);
+      if (await this.browser.run((s, value) => document.querySelector(s).value === value, selector, value)) return;
+    }
+    throw new Error(`${value} of ${selector} cannot be chosen`);
+  }
+
+  // Acts in a frame.
+  async within(selector, act) {
+    if (this.byKeys) await this.reach(selector);
+    await this.enter(selector);
+    try {
+      return await act();
+    } finally {
+      await this.enter(null);
+    }
+  }
+
+  async enter(selector) {
+    const id = selector && (await this.browser.post("element", { using: "css selector", value: selector }));
+    await this.browser.post("frame", { id });
+    this.frame = selector;
+  }
+
+  // Acts in the page around the frame.
+  async outside(act) {
+    const { frame } = this;
+    await this.enter(null);
+    try {
+      return await act(frame);
+    } finally {
+      await this.enter(frame);
+    }
+  }
+
   state(name) {
     return this.browser.until((state) => document.querySelector(`#status .${state}`) && document.querySelector("#status").textContent, name);
   }
@@ -81,7 +178,7 @@ class Visitor {
 const wide = (browser) => browser.run(() => document.documentElement.scrollWidth - innerWidth);
 
 // From an empty folder, or one with the files of the visits before, to a tested run.
-async function journey(visitor, file) {
+async function journey(visitor, file, isThorough) {
   const { browser, name } = visitor;
   await browser.until(() => document.documentElement.dataset.ready);
   check(`${name}: the token has left the address`, !(await browser.run(() => location.href)).includes("token"));
@@ -121,6 +218,7 @@ async function journey(visitor, file) {
   check(`${name}: the run is watched`, (await browser.run(() => document.querySelector("figcaption output").textContent)).startsWith("generation "));
   check(`${name}: its command can be repeated`, (await browser.run(() => document.querySelector(".command code").textContent)).includes(`farsa run ${file}.toml --seed 1 --generations 1000000 --set evolution.population=20`));
   await visitor.picture("6-running");
+  await champion(visitor, isThorough);
   await visitor.press("#stop");
   // No machine ends this run before it is stopped.
   const stopped = await visitor.state("stopped");
@@ -133,7 +231,20 @@ async function journey(visitor, file) {
   await visitor.type("#more", "1000100");
   await visitor.press("#extend");
   await browser.until(() => /^running\d+ of 1000100/.test(document.querySelector("#status").textContent));
+  // The next answer about the run is from before the stop, and arrives after the event of its end.
+  await browser.run(async () => {
+    const ask = fetch;
+    const isOfRun = (path) => String(path).startsWith("/api/run?");
+    const before = await (await ask(`/api/run?name=${location.hash.split("/")[2]}`)).text();
+    window.fetch = async (path, ...rest) => {
+      if (!isOfRun(path)) return ask(path, ...rest);
+      window.fetch = ask;
+      await new Promise((resolve) => setTimeout(resolve, 2000));
+      return new Response(before);
+    };
+  });
   await visitor.press("#stop");
+  await sleep(2500);
   await visitor.state("stopped");
   await visitor.type("#trials", "30");
   check(`${name}: the protocols are offered`, (await browser.until(() => document.querySelector("#protocol")?.textContent)).includes("lesions"));
@@ -144,6 +255,10 @@ async function journey(visitor, file) {
   check(`${name}: a run fits the screen`, (await wide(browser)) <= 0, String(await wide(browser)));
 
   await visitor.press("#home");
+  if (folder) {
+    await browser.until(() => document.querySelector("#search-experiments"));
+    await experiments(visitor, readdirSync(folder).filter((name) => name.endsWith(".toml")).sort().join());
+  }
   const row = await browser.until((run) => {
     const row = document.querySelector(`[data-run="${run}"]`);
     return row?.textContent.includes("stopped") && row.textContent.includes("% (") && row.textContent;
@@ -159,7 +274,71 @@ async function journey(visitor, file) {
   check(`${name}: the console is silent`, log.length === 0, log.join(" | "));
 }
 
-// A trial of any individual: settings in place, a cut neuron, a random genome, evolution that becomes a run of the list.
+// Experiments and pages of the gallery are searched and sorted.
+async function experiments(visitor, files) {
+  const { browser, name } = visitor;
+  const names = () => browser.run(() => [...document.querySelectorAll(".tile")].filter((tile) => tile.checkVisibility()).map((tile) => tile.querySelector("b").textContent));
+  await visitor.type("#search-experiments", "pole");
+  check(`${name}: experiments are searched`, (await names()).join() === "double-pole", (await names()).join());
+  await visitor.type("#search-experiments", "gallery");
+  check(`${name}: pages of the gallery are found`, (await names()).join() === "dancer,walker", (await names()).join());
+  await visitor.picture("gallery");
+  await visitor.choose("#order-experiments", "last");
+  check(`${name}: they are sorted by name`, (await names()).join() === "walker,dancer", (await names()).join());
+  await visitor.choose("#order-experiments", "oldest");
+  check(`${name}: they are sorted by date`, (await names()).join() === "walker,dancer" && (await browser.run(() => document.querySelector("[data-kind=gallery] a").getAttribute("href"))) === "/files/gallery/walker.html", (await names()).join());
+  await visitor.choose("#order-experiments", "name");
+  await visitor.type("#search-experiments", "nothing has this");
+  check(`${name}: a search without a result says so`, (await names()).length === 0 && (await browser.run(() => document.querySelector("[aria-labelledby=experiments]").textContent)).includes("No experiment has these words."));
+  await visitor.type("#search-experiments", KEY.backspace);
+  check(`${name}: without a search the folder's files are shown`, (await names()).join() === files, (await names()).join());
+}
+
+// The champion on the page of a running run: it follows new champions in its frame, but not while it is changed.
+async function champion(visitor, isThorough) {
+  const { browser, name } = visitor;
+  const rows = () => Number(/generation (\d+)/.exec(document.querySelector("figcaption output").textContent)[1]);
+  await browser.until((s) => document.querySelector(s), CHAMPION);
+  await browser.run(() => document.querySelector("#champion").scrollIntoView());
+  await visitor.within(CHAMPION, async () => {
+    await browser.until(() => window.farsa && (farsa.ready || farsa.error));
+    check(`${name}: the champion of a running run is shown`, (await browser.run(() => farsa.error)) === null);
+    const parts = await browser.run(() => [farsa.trials[0].ticks > 1, document.querySelector("#graph").clientHeight > 0, document.querySelectorAll("#groups .row").length > 3]);
+    check(`${name}: with its trial, network and channels`, parts.every(Boolean), parts.join());
+    await browser.run(() => { window.isSame = true; });
+  });
+  const shown = () => visitor.within(CHAMPION, () => browser.run(() => window.isSame && document.querySelector("#live select").selectedOptions[0].textContent));
+  const first = await shown();
+  // Nothing is touched for some seconds. A focus in the channels or settings holds a champion back.
+  if (visitor.byKeys) await visitor.within(CHAMPION, () => visitor.reach("#live select"));
+  const followed = await visitor.within(CHAMPION, () => browser.until((first) => {
+    const text = document.querySelector("#live select").selectedOptions[0].textContent;
+    return text !== first && text;
+  }, first));
+  check(`${name}: a new champion follows in the same page`, /^generation \d+, new$/.test(followed) && (await shown()) !== false, `${first} to ${followed}`);
+  const graph = await visitor.within(CHAMPION, () => browser.run(() => [farsa.trials.length, document.querySelector("#evolution p").textContent]));
+  check(`${name}: alone, with its generation`, graph[0] === 1 && graph[1].startsWith("Generation "), graph.join(" | "));
+  await visitor.rest(CHAMPION);
+  await visitor.picture("champion");
+  if (!isThorough) return;
+  await visitor.within(CHAMPION, () => visitor.push("Noise 0.1"));
+  await visitor.within(CHAMPION, () => browser.until(() => farsa.trials.length === 2));
+  const held = await shown();
+  const before = await browser.run(rows);
+  await sleep(7500);
+  check(`${name}: a changed trial stays`, (await shown()) === held && (await browser.run(rows)) > before, `${held}, ${await shown()}`);
+  await visitor.within(CHAMPION, async () => {
+    await visitor.push("Follow");
+    await visitor.push("Undo all");
+    await browser.until(() => farsa.trials.length === 1);
+  });
+  await sleep(7500);
+  check(`${name}: without Follow it stays`, (await shown()) === held, `${held}, ${await shown()}`);
+  await visitor.within(CHAMPION, () => visitor.push("Show champion"));
+  await visitor.within(CHAMPION, () => browser.until((held) => document.querySelector("#live select").selectedOptions[0].textContent !== held, held));
+}
+
+// A trial of any individual: settings in place, a cut neuron, a moved body, a random genome, evolution that becomes a run of the list.
 async function trial(visitor, run) {
   const { browser, name } = visitor;
   await browser.go(new URL(`/#/run/${run}`, address));
@@ -167,50 +346,100 @@ async function trial(visitor, run) {
   await visitor.type("#generation", "1");
   await visitor.type("#individual", "3");
   await visitor.press("#make-live");
-  await browser.until(() => document.querySelector("iframe.trial"));
-  const within = async (script, ...args) => {
-    await browser.post("frame", { id: await browser.post("element", { using: "css selector", value: "iframe.trial" }) });
-    try {
-      return await script(...args);
-    } finally {
-      await browser.post("frame", { id: null });
-    }
-  };
-  await within(() => browser.until(() => window.farsa && (farsa.ready || farsa.error)));
-  const page = (script, ...args) => within(() => browser.run(script, ...args));
+  await browser.until(() => document.querySelector('iframe[title^="Trial"]'));
+  const page = (script, ...args) => visitor.within(TRIAL, () => browser.run(script, ...args));
+  const until = (script, ...args) => visitor.within(TRIAL, () => browser.until(script, ...args));
+  const status = (text) => until((text) => [document.querySelector("#live [role=status]").textContent].find((said) => said.includes(text)), text);
+  await until(() => window.farsa && (farsa.ready || farsa.error));
   check(`${name}: the page is of the chosen individual`, (await page(() => farsa.error ?? document.querySelector("#title").textContent)).includes(run));
-  check(`${name}: it is equal to the run`, (await page(() => farsa.live.verify())).startsWith("Equal to the run"));
-  await page(() => farsa.live.settle({ "network.slope": "0.2" }));
-  const settled = await page(() => farsa.trials.map((trial) => trial.name));
-  check(`${name}: a changed setting runs the trial again beside the other`, settled.length === 2 && settled[1].includes("network.slope = 0.2"), settled.join(" | "));
+  await visitor.within(TRIAL, () => visitor.push("Verify"));
+  check(`${name}: it is equal to the run`, (await status("the run")).startsWith("Equal to the run"));
+
+  const set = (key, value) => visitor.within(TRIAL, async () => {
+    if (!(await browser.run(() => document.querySelector("#settings").open))) await visitor.press("#settings > summary");
+    await visitor.type("#settings input[type=search]", key);
+    await visitor.type(`#settings [aria-label="${key}"]`, value);
+    await visitor.press("#apply");
+  });
+  await set("network.slope", "0.2");
+  const settled = await until(() => farsa.trials.length === 2 && farsa.trials.map((trial) => trial.name));
+  check(`${name}: a changed setting runs the trial again with the other`, settled[1].includes("network.slope = 0.2"), settled.join(" | "));
   check(`${name}: the form shows the change`, (await page(() => document.querySelector(".setting.changed span").textContent)) === "slope");
-  await page(() => farsa.live.settle({ "network.hidden": "9" }));
-  const wrong = await page(() => document.querySelector("#live [role=status]").textContent);
-  check(`${name}: a setting that the genes do not fit is refused`, wrong.includes("parameters where"), wrong);
+  await set("network.hidden", "9");
+  const wrong = await status("parameters where");
+  check(`${name}: a setting that the genes do not fit is refused`, wrong !== "", wrong);
   check(`${name}: the last valid change stays`, (await page(() => document.querySelector(".chips").textContent)).startsWith("network.slope = 0.2"));
+  await visitor.within(TRIAL, () => visitor.push("Undo all"));
+  await until(() => farsa.trials.length === 1);
+
   const neuron = await page(() => [...document.querySelectorAll("[aria-label=Part] option")].map(({ value }) => value).find((value) => value.startsWith("neuron:")));
-  await page((neuron) => farsa.live.set(neuron, ""), neuron);
-  const cut = await page(() => farsa.trials[1].name);
+  await visitor.within(TRIAL, async () => {
+    await visitor.choose("[aria-label=Part]", neuron);
+    await visitor.push("Silence or cut");
+  });
+  const cut = await until(() => farsa.trials.length === 2 && farsa.trials[1].name);
   check(`${name}: a neuron is cut`, cut.includes(`with ${neuron}`), cut);
+  await visitor.rest(TRIAL);
   await visitor.picture("trial");
-  await page(() => farsa.live.undo());
-  await page(() => farsa.live.random());
-  check(`${name}: a random genome is shown`, (await page(() => document.querySelector("#live select").selectedOptions[0].textContent)) === "generation 0, random of seed 2");
-  const before = await page(async () => (await farsa.live.evolve(3)).at(-1).generation);
-  const kept = async (kind) => {
-    await page((kind) => void farsa.live.keep(kind), kind);
-    await visitor.press("dialog .main");
-    return browser.until((kind) => [...document.querySelectorAll(".note")].map((note) => note.textContent).findLast((text) => text.includes(kind === "run" ? "is evolved as" : "Kept as")), kind);
+
+  // A body is moved by keys in every visit. Only a command repeats this.
+  await visitor.within(TRIAL, async () => {
+    await visitor.push("Move bodies");
+    await browser.keys(KEY.right + KEY.right + KEY.enter);
+    await browser.until(() => document.querySelector(".chips").textContent.includes("moved at"));
+    await browser.until(() => farsa.trials[1]?.name.includes("1 moved"));
+  });
+  const save = async (kind) => {
+    await visitor.within(TRIAL, async () => {
+      await visitor.choose('[aria-label="What is saved"]', kind);
+      await visitor.press("#keep");
+    });
   };
-  check(`${name}: the changed configuration is kept`, (await kept("configuration")).includes(`exports/${run}.toml`));
+  await save("configuration");
+  const refused = await status("configuration");
+  check(`${name}: a configuration without the move is refused`, refused === "A configuration cannot move or push bodies: save the command.", refused);
+  const notes = await browser.run(() => document.querySelectorAll(".note").length);
+  const kept = async (kind) => {
+    await save(kind);
+    await visitor.press("dialog .main");
+    return browser.until((kind) => [...document.querySelectorAll(".note")].map((note) => note.textContent).findLast((text) => text.includes(kind)), kind === "run" ? "is evolved as" : `exports/`);
+  };
+  check(`${name}: nothing was kept`, notes === (await browser.run(() => document.querySelectorAll(".note").length)));
+  const script = /exports\/\S+\.sh/.exec(await kept("script"))[0];
+  if (folder) {
+    const film = await page(() => farsa.trials.map((trial) => trial.json.data));
+    execFileSync("sh", [script, `runs/${run}`], { cwd: folder, stdio: "ignore" });
+    const html = readFileSync(join(folder, "trial.html"), "utf8");
+    const [intact, changed] = JSON.parse(html.slice(html.lastIndexOf('id="data">') + 10, html.lastIndexOf("</script>"))).episodes;
+    check(`${name}: the kept command has the bits of the page`, intact.data === film[0] && changed.data === film[1] && film[0] !== film[1]);
+    check(`${name}: with the cut and the move`, changed.name.includes(`with ${neuron}, 1 moved`), changed.name);
+    rmSync(join(folder, "trial.html"));
+  }
+  await visitor.within(TRIAL, async () => {
+    await visitor.push("Undo all");
+    await browser.until(() => farsa.trials.length === 1);
+    await visitor.push("Random genome");
+  });
+  check(`${name}: a random genome is shown`, await until(() => document.querySelector("#live select").selectedOptions[0].textContent === "generation 0, random of seed 2"));
+
+  // Evolution continues until it is stopped.
+  await visitor.within(TRIAL, () => visitor.push("Continue evolution"));
+  const generation = () => Number(/Generation (\d+)/.exec(document.querySelector("#evolution p").textContent)?.[1]);
+  const from = await page(generation);
+  await until((from) => Number(/Generation (\d+)/.exec(document.querySelector("#evolution p").textContent)?.[1]) >= from + 3, from);
+  await visitor.within(TRIAL, () => visitor.push("Stop"));
+  await until(() => [...document.querySelectorAll("#evolution button")].some((button) => button.textContent === "Continue evolution"));
+  const last = await page(generation);
+  check(`${name}: the changed configuration is kept`, (await kept("configuration")).includes(`exports/${run}`));
   const note = await kept("run");
-  const made = /evolved as (\S+?)\./.exec(note)?.[1] + (/\.(\d+)\./.exec(note) ? `.${/\.(\d+)\./.exec(note)[1]}` : "");
+  const made = /evolved as (\S+)\.$/.exec(note.replace("×", ""))?.[1];
+  await visitor.picture("kept");
   await visitor.press("#home");
   const row = await browser.until((made) => {
     const row = document.querySelector(`[data-run="${made}"]`);
     return row && /finished|stopped|failed/.test(row.textContent) && row.textContent;
   }, made);
-  check(`${name}: the run of the page is in the list`, row.includes(`${before + 1} of`), row);
+  check(`${name}: the run of the page is in the list`, row.includes("finished") && row.includes(`${last + 1} of`), row);
   await browser.log();
 }
 
@@ -271,14 +500,25 @@ async function text(visitor, file) {
   await browser.log();
 }
 
+// A gallery of two pages and the page that shows them.
+if (folder) {
+  mkdirSync(join(folder, "gallery"));
+  for (const [name, date] of [["walker", 1e9], ["dancer", 1.1e9], ["index", 1.2e9]]) {
+    const path = join(folder, "gallery", `${name}.html`);
+    writeFileSync(path, `<!doctype html><title>${name}</title><p>A page of ${name}.`);
+    utimesSync(path, date, date);
+  }
+}
+
 const driver = await startDriver();
 async function visit(name, file, { scheme, then, ...options }) {
+  if (!name.includes(visits)) return;
   const browser = await driver.open(options);
   try {
     await browser.media({ "prefers-color-scheme": scheme, "prefers-reduced-motion": "reduce" });
     await browser.go(address);
     const visitor = new Visitor(browser, name, options);
-    await journey(visitor, file);
+    await journey(visitor, file, !options.keys && !options.phone);
     await then?.(visitor);
   } catch (error) {
     check(name, false, error.message);
@@ -292,8 +532,11 @@ await visit("mouse, light", "seeker", { size: [1440, 900], scheme: "light", then
   await trial(visitor, "seeker-1");
   await pages(visitor.browser, "seeker-1");
 } });
-await visit("keys, dark", "finder", { size: [1440, 900], scheme: "dark", keys: true });
-await visit("phone, dark", "walker", { size: [390, 844], phone: true, scheme: "dark" });
+await visit("keys, dark", "finder", { size: [1440, 900], scheme: "dark", keys: true, then: (visitor) => trial(visitor, "finder-1") });
+// A phone is emulated. For a frame in its own process Chromium would place the click of a finger elsewhere.
+const phone = { size: [390, 844], phone: true, flags: ["--disable-features=IsolateSandboxedIframes"] };
+await visit("phone, dark", "walker", { ...phone, scheme: "dark", then: (visitor) => trial(visitor, "walker-1") });
+await visit("phone, light", "rover", { ...phone, scheme: "light" });
 await sleep(0);
 driver.stop();
 console.log(failed ? `${failed} failed` : "all passed");

@@ -69,7 +69,8 @@ async function freshDiffer(page, ask) {
   const alone = [];
   for (const [k] of few.fitness.entries()) alone.push(await ask({ do: "film", individual: 0, trial: { fresh: { number: 3 + k, seed: 1 } } }));
   const same = JSON.stringify(few.fitness) === JSON.stringify(alone.map(({ fitness }) => fitness));
-  if (same && few.successes === alone.filter(({ success }) => success).length) return 0;
+  // Without a criterion there is no number of successes.
+  if (same && (few.successes ?? 0) === alone.filter(({ success }) => success).length) return 0;
   console.log(`${page}: fresh trials side by side earn ${few.fitness}, alone ${alone.map(({ fitness, refusal }) => refusal ?? fitness)}`);
   return 1;
 }

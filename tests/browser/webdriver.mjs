@@ -125,11 +125,14 @@ export class Browser {
 
   // Waits until the function gives something true.
   async until(script, ...args) {
-    const end = Date.now() + 120_000;
+    const end = Date.now() + 240_000;
     for (;;) {
       const value = await this.run(script, ...args);
       if (value) return value;
-      if (Date.now() > end) throw new Error(`never true: ${script}`);
+      if (Date.now() > end) {
+        const shown = await this.run(() => `${document.visibilityState} ${location.href} with ${document.activeElement?.outerHTML.slice(0, 100)}: ${document.body?.innerText.slice(0, 300)}`);
+        throw new Error(`never true: ${script} on the ${shown.replace(/\s+/g, " ")}`);
+      }
       await sleep(50);
     }
   }
@@ -154,9 +157,10 @@ export class Browser {
     return this.post("actions", { actions: [{ type: "wheel", id: "wheel", actions: [{ type: "scroll", x: Math.round(x), y: Math.round(y), deltaX: 0, deltaY, duration: 50 }] }] });
   }
 
-  // Keys by their WebDriver characters.
-  async keys(text) {
-    const actions = [...text].flatMap((value) => [{ type: "keyDown", value }, { type: "keyUp", value }]);
+  // Keys by their WebDriver characters, while another one may be held.
+  async keys(text, held = null) {
+    const of = (type) => (held ? [{ type, value: held }] : []);
+    const actions = [...of("keyDown"), ...[...text].flatMap((value) => [{ type: "keyDown", value }, { type: "keyUp", value }]), ...of("keyUp")];
     await this.post("actions", { actions: [{ type: "key", id: "keys", actions }] });
   }
 
@@ -195,4 +199,4 @@ class Firefox extends Browser {
   }
 }
 
-export const KEY = { enter: "\uE007", pageUp: "\uE00E", left: "\uE012", right: "\uE014", home: "\uE011", tab: "\uE004", end: "\uE010", escape: "\uE00C" };
+export const KEY = { backspace: "\uE003", enter: "\uE007", pageUp: "\uE00E", left: "\uE012", up: "\uE013", right: "\uE014", down: "\uE015", home: "\uE011", tab: "\uE004", end: "\uE010", escape: "\uE00C", shift: "\uE008" };

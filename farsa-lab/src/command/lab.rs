@@ -28,7 +28,8 @@ impl Invocation<'_, '_> {
         let facts = ProgramFacts { name: self.program.into(), experiments, templates };
         let processors = || thread::available_parallelism().map_or(1, usize::from);
         let jobs = args.jobs.map_or_else(processors, usize::from);
-        let options = LabOptions { folder: &args.folder, port: args.port, jobs, read_only: args.read_only };
+        let module = args.module.as_deref();
+        let options = LabOptions { folder: &args.folder, port: args.port, jobs, module, read_only: args.read_only };
         lab::serve(options, facts, |address| {
             if args.json {
                 return say(&pretty(&Address { address })?);

@@ -1,10 +1,14 @@
 //! `farsa live` and `farsa serve`.
 
+use std::io::Write as _;
 use std::path::Path;
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde::Serialize;
 
-use crate::command::arguments::subcommands::{LiveArgs, ServeArgs};
+use crate::command::arguments::lab::ServeArgs;
+use crate::command::arguments::subcommands::LiveArgs;
 use crate::command::cli::{say, tell};
 use crate::command::invocation::Invocation;
 use crate::error::Error;
@@ -19,6 +23,8 @@ use crate::store::bounded;
 const MAX_MODULE_BYTES: u64 = 100_000_000;
 /// First bytes of a gzip file.
 const GZIP: &[u8] = &[0x1f, 0x8b];
+/// First bytes of a WebAssembly module.
+const WASM: &[u8] = b"\0asm";
 
 /// Address of a served page.
 #[derive(Serialize)]
@@ -44,6 +50,9 @@ impl Invocation<'_, '_> {
         self.live_module(file.as_deref(), &plan)?;
         let module = |plan: &Plan<'_>| self.live_module(file.as_deref(), plan);
         let served = Served { laboratory: self.laboratory, directory: &directory, module: &module };
+        if let Some(part) = args.print {
+            return say(&part.text(served, &plan)?);
+        }
         serve::serve(served, args.port, |address| {
             if args.json { say(&pretty(&Address { address })?) } else { tell(&format!("{address}\n")) }
         })
@@ -66,11 +75,16 @@ impl Invocation<'_, '_> {
     }
 }
 
-/// Reads a module.
+/// Reads a module, and compresses one that is not.
 fn module_file(path: &Path) -> Result<Vec<u8>, Error> {
     let module = bounded::read_stream(path, MAX_MODULE_BYTES)?;
+    if module.starts_with(WASM) {
+        let mut compressed = GzEncoder::new(Vec::new(), Compression::best());
+        return compressed.write_all(&module).and_then(|()| compressed.finish()).map_err(Error::io("read", path));
+    }
     if !module.starts_with(GZIP) {
-        return Err(Error::Usage("the module is not compressed by gzip".into()));
+        let why = "is no WebAssembly module, neither a plain one nor one compressed by gzip";
+        return Err(Error::Usage(format!("{}: {why}", path.display())));
     }
     Ok(module)
 }

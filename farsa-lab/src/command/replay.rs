@@ -10,6 +10,7 @@ use crate::command::invocation::Invocation;
 use crate::error::Error;
 use crate::escaped::escaped;
 use crate::evaluation::replayed::Replayed;
+use crate::evaluation::trial_changes::TrialChanges;
 use crate::evaluation::{protocols, replay};
 use crate::json::pretty;
 use crate::run::world_choice;
@@ -21,7 +22,9 @@ impl Invocation<'_, '_> {
         world_choice::visit(&mut plan, args.world.name.as_deref())?;
         let other = args.compare.as_deref().map(|path| self.existing(path)).transpose()?;
         let other = other.as_ref().map(|(directory, plan)| (plan, directory));
-        let (which, lesion) = (args.which.which(), args.lesion.as_deref());
+        let which = args.which.which();
+        let changes = TrialChanges::read(args.lesion.as_deref(), args.changes.as_deref())?;
+        let changes = changes.as_ref();
         let out = || -> Result<Box<dyn Write>, Error> {
             match &args.out {
                 Some(path) => Ok(Box::new(create_result(path)?)),
@@ -31,8 +34,8 @@ impl Invocation<'_, '_> {
             }
         };
         match (args.choice()?, &args.html) {
-            (None, None) => self.replayed(args, replay::replay(&plan, &directory, which, lesion, out)?),
-            (None, Some(path)) => self.replayed(args, replay::page(&plan, &directory, which, lesion, other, path)?),
+            (None, None) => self.replayed(args, replay::replay(&plan, &directory, which, changes, out)?),
+            (None, Some(path)) => self.replayed(args, replay::page(&plan, &directory, which, changes, other, path)?),
             (Some(choice), None) => self.replayed(args, protocols::replay::replay(&plan, &directory, choice, out)?),
             (Some(choice), Some(path)) => {
                 self.replayed(args, protocols::replay::page(&plan, &directory, choice, other, path)?)

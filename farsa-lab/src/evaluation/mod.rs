@@ -44,6 +44,9 @@ pub(crate) mod test;
 /// `test.csv`: one line per trial of a test, and its summary.
 #[cfg(feature = "command")]
 pub(crate) mod test_table;
+/// Changes of replayed trials.
+#[cfg(feature = "command")]
+pub(crate) mod trial_changes;
 /// Trials of a test, and their outcomes in numbers and words.
 pub(crate) mod trials;
 

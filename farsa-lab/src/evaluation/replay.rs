@@ -13,8 +13,10 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::evaluation::memory_budget::MemoryUse;
 use crate::evaluation::replayed::{self, InWords, Replayed, run_in_words};
+use crate::evaluation::trial_changes::TrialChanges;
 use crate::evaluation::trials::{came_to, facts, fitness, success, why_failed};
 use crate::experiment::Anatomy;
+use crate::experiment::disturbances::Disturbances;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
@@ -105,6 +107,8 @@ pub(crate) struct Replayable {
     pub(crate) normalisation: Option<ObservationStatistics>,
     /// Change of the controller.
     intervention: Option<Intervention>,
+    /// Bodies that are moved or pushed, with their numbers in the world.
+    disturbances: Disturbances,
     seed: u64,
     pub(crate) generation: u32,
     pub(crate) individual: u32,
@@ -162,14 +166,14 @@ impl Replayable {
         let opponents = met.iter().map(decoded).collect::<Option<_>>().ok_or_else(others)?;
         let normalisation = history.normalisation(generation).cloned();
         let seed = plan.seed;
-        let intervention = None;
         let mut replayable = Self {
             evaluator,
             genome,
             parameters,
             opponents,
             normalisation,
-            intervention,
+            intervention: None,
+            disturbances: Disturbances::default(),
             seed,
             generation,
             individual,
@@ -199,12 +203,16 @@ impl Replayable {
         Ok(())
     }
 
-    /// Changes the controller in all that is replayed from now on, by a list such as `neuron:3`.
+    /// Changes the controller and moves bodies in all trials that are replayed later.
     ///
     /// # Errors
-    /// As for [`parts`] and [`Anatomy::intervention`](crate::advanced::Anatomy::intervention).
-    fn change(&mut self, plan: &Plan<'_>, list: &str) -> Result<(), Error> {
-        self.intervention = Some(parts(self.evaluator.as_ref(), plan)?.intervention(list)?);
+    /// Errors of [`parts`], [`Anatomy::intervention`](crate::advanced::Anatomy::intervention) and [`Disturbances::in_world`].
+    fn change(&mut self, plan: &Plan<'_>, changes: &TrialChanges) -> Result<(), Error> {
+        let list = changes.lesion.as_ref();
+        let parsed = |list: &String| parts(self.evaluator.as_ref(), plan)?.intervention(list);
+        self.intervention = list.map(parsed).transpose()?;
+        let name = plan.experiment.name();
+        self.disturbances = changes.disturbances.in_world(self.evaluator.as_ref(), name, &self.schema())?;
         Ok(())
     }
 
@@ -228,7 +236,9 @@ impl Replayable {
         let opponents: Vec<&[f32]> = opponents.iter().map(Vec::as_slice).collect();
         let (normalisation, intervention) = (self.normalisation.as_ref(), self.intervention.as_ref());
         let plain = Evaluation::new(&self.parameters, id);
-        let evaluation = Evaluation { opponents: &opponents, normalisation, intervention, ..plain };
+        let Disturbances { moves: displacements, pushes } = &self.disturbances;
+        let changed = Evaluation { intervention, displacements, pushes, ..plain };
+        let evaluation = Evaluation { opponents: &opponents, normalisation, ..changed };
         let (generation, individual) = (self.generation, self.individual);
         let panicked =
             |()| Error::Other(format!("trial {trial} of individual {individual} of generation {generation} panicked"));
@@ -277,9 +287,9 @@ impl Replayable {
     }
 
     /// Summarizes the trials with these changes.
-    fn lesioned(&self, list: &str, outcomes: &[Outcome]) -> Lesioned {
+    fn lesioned(&self, changes: &TrialChanges, outcomes: &[Outcome]) -> Lesioned {
         let success = self.success(outcomes);
-        Lesioned { list: list.into(), trials: self.replayed(outcomes), fitness: self.fitness(outcomes), success }
+        Lesioned { list: changes.in_words(), trials: self.replayed(outcomes), fitness: self.fitness(outcomes), success }
     }
 }
 
@@ -313,7 +323,7 @@ pub(crate) struct ReplaySummary {
     /// Combination of all trials of the individual into its fitness.
     #[serde(skip)]
     combined: String,
-    /// The same trials with parts of the controller changed, where that was asked for.
+    /// The same trials with changes, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     lesion: Option<Lesioned>,
 }
@@ -368,22 +378,22 @@ impl InWords for ReplaySummary {
     }
 }
 
-/// Writes the trials as CSV, one line per step. `out` opens the output after the trials were found. With a `lesion`, a
-/// list of changes, the changed trials are written and both are summarized.
+/// Writes the trials as CSV, one line per step. `out` opens the output after the trials were found. With
+/// `changes`, the changed trials are written and both are summarized.
 pub(crate) fn replay<W: Write>(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Selection,
-    lesion: Option<&str>,
+    changes: Option<&TrialChanges>,
     out: impl FnOnce() -> Result<W, Error>,
 ) -> Result<Replayed<ReplaySummary>, Error> {
     let mut replayable = Replayable::find(plan, directory, which)?;
     let mut intact = None;
-    if let Some(list) = lesion {
+    if let Some(changes) = changes {
         let trials = replayable.trials.clone();
         let outcomes = trials.map(|trial| replayable.evaluate(trial, None)).collect::<Result<Vec<_>, _>>()?;
-        replayable.change(plan, list)?;
-        intact = Some((list, outcomes));
+        replayable.change(plan, changes)?;
+        intact = Some((changes, outcomes));
     }
     let failed = |source: io::Error| Error::Io { doing: "write", path: "the replay".into(), source };
     let mut table = Table::new(out()?, &replayable.schema()).map_err(failed)?;
@@ -404,21 +414,21 @@ pub(crate) fn replay<W: Write>(
     ended?;
     let replay = match intact {
         None => replayable.summary(plan, directory, &outcomes),
-        Some((list, intact)) => {
-            let lesion = Some(replayable.lesioned(list, &outcomes));
+        Some((changes, intact)) => {
+            let lesion = Some(replayable.lesioned(changes, &outcomes));
             ReplaySummary { lesion, ..replayable.summary(plan, directory, &intact) }
         }
     };
     Ok(Replayed::new(replay, None))
 }
 
-/// Writes a page for a browser with the trials, and the same selection of another run or with a `lesion`, a list of
-/// changes. The best trial of each comes first, and the best of both are side by side.
+/// Writes a page for a browser with the trials, and the same selection of another run or with `changes`. The best trial
+/// of each comes first, and the best of both are side by side.
 pub(crate) fn page(
     plan: &Plan<'_>,
     directory: &Directory,
     which: Selection,
-    lesion: Option<&str>,
+    changes: Option<&TrialChanges>,
     compare: Option<(&Plan<'_>, &Directory)>,
     path: &Path,
 ) -> Result<Replayed<ReplaySummary>, Error> {
@@ -431,14 +441,15 @@ pub(crate) fn page(
         let order: Vec<u32> = films.iter().map(|film| film.trial).collect();
         add(page, films);
         let mut summary = replayable.summary(plan, directory, &outcomes);
-        if let Some(list) = lesion {
-            replayable.change(plan, list)?;
-            let (mut changed, outcomes) = self::films(&mut replayable, &format!("with {list}; {run}"), &mut memory)?;
+        if let Some(changes) = changes {
+            replayable.change(plan, changes)?;
+            let whose = format!("with {}; {run}", changes.in_words());
+            let (mut changed, outcomes) = self::films(&mut replayable, &whose, &mut memory)?;
             // The intact trials.
             changed.sort_by_key(|film| order.iter().position(|trial| *trial == film.trial));
             page.open_beside(page.episodes());
             add(page, changed);
-            summary.lesion = Some(replayable.lesioned(list, &outcomes));
+            summary.lesion = Some(replayable.lesioned(changes, &outcomes));
         }
         Ok(summary)
     })

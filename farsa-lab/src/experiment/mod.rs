@@ -10,6 +10,8 @@ mod controlled;
 pub(crate) mod controller_export;
 /// Bodies that are moved or pushed during an episode.
 pub(crate) mod disturbance;
+/// Moves and pushes of bodies in an episode.
+pub(crate) mod disturbances;
 /// One trial in a world, and its loop.
 pub(crate) mod episode;
 /// Tasks and evaluators: parameters in, outcomes out.
@@ -35,7 +37,7 @@ mod network_parameters;
 /// Controller of a robot: its sensors, a network, and its motors.
 mod neurocontroller;
 /// A controller with normalized observations.
-mod normalized_controller;
+pub(crate) mod normalized_controller;
 /// Outcome of a trial, and the description of a robot.
 pub(crate) mod outcome;
 /// A number that evolution sets, with its range.

@@ -8,7 +8,7 @@ use crate::experiment::episode::EpisodeId;
 use crate::experiment::intervention::Intervention;
 
 /// Most that a normalized observation is away from 0, in standard deviations.
-const LIMIT: f32 = 10.0;
+pub(crate) const LIMIT: f32 = 10.0;
 
 /// A controller whose observations can be normalized by the mean and the deviation of earlier ones.
 ///

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use farsa_evo::ObservationStatistics;
 use farsa_models::mjcf::{self, MjcfOptions};
 use farsa_models::urdf;
+use farsa_num::Scalar;
 use serde::Serialize;
 
 use crate::error::Error;
@@ -12,6 +13,7 @@ use crate::evaluation::populations::Populations;
 use crate::evaluation::{genotypes, trials};
 use crate::experiment::controller_export::{ControllerExport, StartExport};
 use crate::experiment::evaluator::{Evaluator, Exports};
+use crate::experiment::normalized_controller::LIMIT;
 use crate::export::controller_formats;
 use crate::export::keyframe::start_of_trial;
 use crate::json::pretty;
@@ -168,6 +170,26 @@ struct ChampionController<'a> {
     population: Option<String>,
     #[serde(flatten)]
     controller: ControllerExport,
+    /// Normalization of the inputs before they reach the network.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    normalization: Option<Normalization>,
+}
+
+/// Normalization of inputs: (x - mean) / deviation, or 0 for a channel with a deviation below 1e-7, at most `limit` from 0.
+#[derive(Serialize)]
+struct Normalization {
+    mean: Vec<f64>,
+    deviation: Vec<f64>,
+    limit: f32,
+}
+
+impl Normalization {
+    /// The numbers of statistics, unless there are too few observations to change anything.
+    fn from_statistics(statistics: &ObservationStatistics) -> Option<Self> {
+        let deviation = statistics.variance().map(Scalar::sqrt).collect();
+        let normalization = Self { mean: statistics.mean().to_vec(), deviation, limit: LIMIT };
+        (statistics.count() > 1).then_some(normalization)
+    }
 }
 
 impl ChampionController<'_> {
@@ -198,8 +220,8 @@ fn as_they_are(normalisation: Option<&ObservationStatistics>, directory: &Direct
     match normalisation {
         None => Ok(()),
         Some(_) => Err(Error::Usage(format!(
-            "{}: its champion's observations are normalized (`{NORMALISE}`), which no exported file can describe: test \
-             and replay it here",
+            "{}: its champion's observations are normalized (`{NORMALISE}`), which this format cannot describe: export \
+             the controller as `json`, or test and replay it here",
             directory.path().display()
         ))),
     }
@@ -233,11 +255,15 @@ fn champion_controller<'a>(
     plan: &'a Plan<'_>,
     directory: &Directory,
     population: Option<&str>,
+    format: ControllerFormat,
 ) -> Result<ChampionController<'a>, Error> {
     let evaluator = plan.evaluator()?;
     let name = plan.experiment.name();
     let champion = Champion::read(plan, directory, evaluator.as_ref(), population)?;
-    as_they_are(champion.normalisation.as_ref(), directory)?;
+    if format != ControllerFormat::Json {
+        as_they_are(champion.normalisation.as_ref(), directory)?;
+    }
+    let normalization = champion.normalisation.as_ref().and_then(Normalization::from_statistics);
     let parameters = champion.parameters(plan, directory, evaluator.as_ref())?;
     let names = evaluator.info().populations;
     let exports = evaluator.exports();
@@ -260,6 +286,7 @@ fn champion_controller<'a>(
         individual,
         population,
         controller,
+        normalization,
     })
 }
 
@@ -275,7 +302,7 @@ pub(crate) fn controller(
     format: ControllerFormat,
     out: Option<PathBuf>,
 ) -> Result<Exported, Error> {
-    let champion = champion_controller(plan, directory, population)?;
+    let champion = champion_controller(plan, directory, population, format)?;
     let content = match format {
         ControllerFormat::Json => pretty(&champion)?.into_bytes(),
         ControllerFormat::Bytes => controller_formats::bytes(&champion.controller)?,

@@ -18,6 +18,7 @@ const CLOSE: f64 = 1e-4;
 #[derive(Default)]
 struct FirstTick {
     poses: BTreeMap<usize, Pose<f64>>,
+    scalars: Vec<f64>,
     ended: bool,
 }
 
@@ -25,6 +26,12 @@ impl Recorder for FirstTick {
     fn pose(&mut self, body: BodyId, pose: Pose) {
         if !self.ended {
             self.poses.insert(body.index(), pose.cast());
+        }
+    }
+
+    fn scalars(&mut self, values: &[f64]) {
+        if !self.ended {
+            self.scalars = values.into();
         }
     }
 
@@ -52,14 +59,26 @@ pub(crate) fn start_of_trial(
     }
     // A recording of several robots has no wheels, and an export has the first robot alone.
     let alone = || first.poses.iter().take(1).map(|(body, pose)| (*body, *pose)).collect();
-    keyframe(robot, &first.poses).or_else(|| keyframe(robot, &alone()))
+    // Several joints of one body have a single recorded pose, but a column each.
+    let columns = || info.schema.scalars.iter().zip(&first.scalars);
+    let of_column = |i: usize| {
+        let name = &robot.segments[i].joint.name;
+        columns().find(|(column, _)| column.group == "joint" && column.name == *name).map(|(_, value)| *value)
+    };
+    let unknown = |_| None;
+    let found = keyframe(robot, &first.poses, unknown).or_else(|| keyframe(robot, &alone(), unknown));
+    found.or_else(|| keyframe(robot, &first.poses, of_column))
 }
 
 /// Computes the positions of joints that bring the bodies to their recorded poses.
 ///
 /// Segments between the joints of one body are not recorded: a slider among them has the position that its nearest
-/// recorded descendant requires, and a hinge is at 0.
-fn keyframe(robot: &Robot, recorded: &BTreeMap<usize, Pose<f64>>) -> Option<Keyframe> {
+/// recorded descendant requires, and a hinge is at 0, unless `known` has its position.
+fn keyframe(
+    robot: &Robot,
+    recorded: &BTreeMap<usize, Pose<f64>>,
+    known: impl Fn(usize) -> Option<f64>,
+) -> Option<Keyframe> {
     let mut poses: Vec<Pose<f64>> = Vec::with_capacity(robot.segments.len());
     let mut positions = vec![0.0; robot.segments.len()];
     let mut bodies = Vec::new();
@@ -76,11 +95,12 @@ fn keyframe(robot: &Robot, recorded: &BTreeMap<usize, Pose<f64>>) -> Option<Keyf
             }
             JointKind::Prismatic => {
                 let way = descendant(robot, recorded, i).map_or([0.0; 3], |at| rest.transform_back(at.position));
-                positions[i] = (0..3).map(|k| way[k] * joint.axis[k]).sum();
+                positions[i] = known(i).unwrap_or_else(|| (0..3).map(|k| way[k] * joint.axis[k]).sum());
                 rest.compose(&Pose::at(joint.axis.map(|x| x * positions[i])))
             }
             JointKind::Revolute => {
-                positions[i] = recorded.get(&i).map_or(0.0, |pose| angle(&rest, pose, joint.axis, joint.range));
+                let of_pose = || recorded.get(&i).map_or(0.0, |pose| angle(&rest, pose, joint.axis, joint.range));
+                positions[i] = known(i).unwrap_or_else(of_pose);
                 let (sine, cosine) = farsa_num::sin_cos(positions[i] / 2.0);
                 let [x, y, z] = joint.axis.map(|part| part * sine);
                 rest.compose(&Pose { position: [0.0; 3], rotation: [x, y, z, cosine] })
@@ -142,12 +162,12 @@ mod tests {
             .collect();
         let poses = KinematicTree::new(&robot).expect("a tree").poses(&wanted);
         let mut recorded: BTreeMap<usize, Pose<f64>> = poses.into_iter().enumerate().collect();
-        let found = keyframe(&robot, &recorded).expect("a keyframe");
+        let found = keyframe(&robot, &recorded, |_| None).expect("a keyframe");
         let worst = found.joints.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst < 1e-9, "{worst}");
         // A body that no joint can reach.
         recorded.entry(3).and_modify(|pose| pose.position[0] += 0.01);
-        assert!(keyframe(&robot, &recorded).is_none());
+        assert!(keyframe(&robot, &recorded, |_| None).is_none());
     }
 
     #[test]

@@ -50,7 +50,8 @@ impl Curve {
             @for run in runs {
                 @let lower = run.iter().map(|&(x, [low, _])| [x as f64, low]);
                 @let upper = run.iter().rev().map(|&(x, [_, high])| [x as f64, high]);
-                polygon points=(plane.points(lower.chain(upper))) fill=(self.color()) fill-opacity="0.22" {}
+                @let points = [corners(lower), corners(upper)].concat();
+                polygon points=(plane.points(points)) fill=(self.color()) fill-opacity="0.22" {}
             }
         }
     }
@@ -59,7 +60,7 @@ impl Curve {
         let (width, opacity) = if self.name.is_some() { ("2", "1") } else { ("1", "0.45") };
         html! {
             @for run in parts(self.values.points(), f64::is_finite) {
-                @let points = run.iter().map(|&(x, y)| [x as f64, y]);
+                @let points = corners(run.iter().map(|&(x, y)| [x as f64, y]));
                 @if let [(x, y)] = run.as_slice() {
                     @let [x, y] = plane.place([*x as f64, *y]);
                     circle cx=(at(x)) cy=(at(y)) r="3" fill=(self.color()) fill-opacity=(opacity) {}
@@ -132,6 +133,19 @@ impl Chart {
 fn parts<T: Copy>(points: impl Iterator<Item = (usize, T)>, drawable: impl Fn(T) -> bool) -> Vec<Vec<(usize, T)>> {
     let points: Vec<(usize, T)> = points.collect();
     points.split(|(_, value)| !drawable(*value)).filter(|part| !part.is_empty()).map(<[_]>::to_vec).collect()
+}
+
+/// Returns a line without the points between two others of equal height.
+fn corners(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let mut line: Vec<[f64; 2]> = Vec::new();
+    for point in points {
+        let level = |[_, y]: &[f64; 2]| y.to_bits() == point[1].to_bits();
+        if matches!(line.as_slice(), [.., a, b] if level(a) && level(b)) {
+            line.pop();
+        }
+        line.push(point);
+    }
+    line
 }
 
 #[cfg(test)]
@@ -211,6 +225,14 @@ mod tests {
         let long: Series = (0..10 * MAX_POINTS + 3).map(|_| 0.0).collect();
         let runs = parts(long.points(), f64::is_finite).concat();
         assert!(runs.len() <= MAX_POINTS + 1 && runs.last().is_some_and(|point| point.0 == 10 * MAX_POINTS + 2));
+    }
+
+    #[test]
+    fn level_stretches_have_two_points() {
+        let line = |heights: &[f64]| corners(heights.iter().enumerate().map(|(x, y)| [x as f64, *y]));
+        assert_eq!(line(&[1.0; 5]), [[0.0, 1.0], [4.0, 1.0]]);
+        assert_eq!(line(&[1.0, 1.0, 2.0, 2.0, 2.0, 1.0]), [[0.0, 1.0], [1.0, 1.0], [2.0, 2.0], [4.0, 2.0], [5.0, 1.0]]);
+        assert!(line(&[]).is_empty());
     }
 
     #[test]

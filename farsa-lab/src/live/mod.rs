@@ -7,8 +7,6 @@ mod bytes;
 mod champion;
 /// A hash of an episode after each step.
 mod digest;
-/// Moves and pushes of the bodies in an episode.
-mod disturbances;
 /// A search continued in memory, shared by sessions.
 mod evolution;
 /// Servers for browsers on this machine.
@@ -20,6 +18,8 @@ pub(crate) mod lab;
 /// Log of fitness, read in parts while it grows.
 #[cfg(feature = "command")]
 mod log_tail;
+/// Programs as modules of pages.
+mod module;
 /// `farsa live`: an interactive page that runs an agent.
 #[cfg(feature = "command")]
 pub(crate) mod page;
@@ -44,4 +44,5 @@ pub(crate) mod serve;
 /// Agent of a page and its episodes.
 mod session;
 
+pub use module::LiveModule;
 pub use session::LiveSession;

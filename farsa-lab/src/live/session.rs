@@ -11,13 +11,13 @@ use crate::evaluation::genotypes::written;
 use crate::evaluation::trials::episode;
 use crate::evaluation::trials::{came_to, facts, fitness, success};
 use crate::experiment::PartNames;
+use crate::experiment::disturbances::Disturbances;
 use crate::experiment::episode::EpisodeId;
 use crate::experiment::evaluator::{Bodies, Evaluation, Evaluator};
 use crate::experiment::intervention::Intervention;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::Outcome;
 use crate::live::digest::Digest;
-use crate::live::disturbances::disturbances;
 use crate::live::evolution::Evolution;
 use crate::live::page_run::{PageIndividual, PageRun};
 use crate::live::request::{
@@ -186,9 +186,11 @@ impl LiveSession {
     /// # Errors
     /// [`Error::Usage`] for an unknown individual, trial, robot, body or part of the controller.
     pub(crate) fn episode(&mut self, request: &EpisodeRequest) -> Result<EpisodeAnswer, Error> {
-        let EpisodeRequest { individual, trial, lesion, watched, .. } = request;
+        let EpisodeRequest { individual, trial, lesion, moves, pushes, watched } = request;
         let schema = schema(self.evaluator.as_ref(), &agent(&self.individuals, *individual)?.saved);
-        let (displacements, pushes) = &disturbances(self.evaluator.as_ref(), self.name, &schema, request)?;
+        let disturbances = Disturbances { moves: moves.clone(), pushes: pushes.clone() };
+        let disturbances = disturbances.in_world(self.evaluator.as_ref(), self.name, &schema)?;
+        let Disturbances { moves: displacements, pushes } = &disturbances;
         let robots = self.evaluator.info().robots;
         if let Some(robot) = watched.filter(|robot| *robot as usize >= robots.len()) {
             return Err(Error::Usage(format!("robot {robot} of {} (the first is 0)", robots.len())));
@@ -214,14 +216,10 @@ impl LiveSession {
         let evaluation = Evaluation { opponents, normalisation, intervention, displacements, pushes, watched, ..plain };
         let outcome = evaluator.evaluate(evaluation, Some(&mut digest));
         let (recording, digests) = digest.into_parts();
-        let remarks = [
-            Some(came_to(evaluator.as_ref(), &outcome)),
-            (!lesion.is_empty()).then(|| format!("with {lesion}")),
-            (!displacements.is_empty()).then(|| format!("{} moved", displacements.len())),
-            (!pushes.is_empty()).then(|| format!("{} pushed", pushes.len())),
-            watched.and_then(|robot| robots.get(robot as usize)).map(|robot| format!("{robot} is recorded")),
-        ];
-        let remarks: Vec<String> = remarks.into_iter().flatten().collect();
+        let first =
+            [Some(came_to(evaluator.as_ref(), &outcome)), (!lesion.is_empty()).then(|| format!("with {lesion}"))];
+        let last = watched.and_then(|robot| robots.get(robot as usize)).map(|robot| format!("{robot} is recorded"));
+        let remarks: Vec<String> = first.into_iter().flatten().chain(disturbances.remarks()).chain(last).collect();
         let mut page = Page::new("");
         page.add(&format!("{name}: {}", remarks.join("; ")), facts(evaluator.as_ref(), &outcome), recording);
         let episode = page.episode(0).unwrap_or_default();

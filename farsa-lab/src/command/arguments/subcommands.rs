@@ -9,7 +9,7 @@ use farsa_view::Camera;
 use crate::command::arguments::export::ExportArgs;
 use crate::command::arguments::files::{CheckArgs, NewArgs};
 use crate::command::arguments::genotypes::{EvaluateArgs, ImportArgs};
-use crate::command::arguments::lab::LabArgs;
+use crate::command::arguments::lab::{LabArgs, ServeArgs};
 use crate::command::arguments::merge::MergeArgs;
 use crate::command::arguments::robot::RobotArgs;
 use crate::command::arguments::shared::{FIXED_BY_PAGE, VariantArgs, WorkerArgs, WorldArgs, whole};
@@ -238,11 +238,8 @@ impl TestArgs {
     /// Returns the individual of the options, or `None` for the champion.
     pub(crate) fn which(&self) -> Option<Selection> {
         let Self { generation, individual, .. } = *self;
-        (generation.is_some() || individual.is_some()).then(|| Selection {
-            generation,
-            individual,
-            ..Selection::default()
-        })
+        let is_given = generation.is_some() || individual.is_some();
+        is_given.then(|| Selection { generation, individual, ..Selection::default() })
     }
 }
 
@@ -255,7 +252,7 @@ pub(crate) struct WhichArgs {
     /// The individual, from 0 [default: the best of the generation]
     #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     individual: Option<u32>,
-    /// The trial, from 0, or `best`, the one of highest fitness [default: all]
+    /// The trial, from 0, or `best` by fitness [default: all]
     #[arg(long, value_name = "N", value_parser = which_trial)]
     trial: Option<TrialSelector>,
 }
@@ -282,23 +279,26 @@ pub(crate) struct ReplayArgs {
     pub(crate) directory: PathBuf,
     #[command(flatten)]
     pub(crate) which: WhichArgs,
-    /// Replay the champion in the cases of a test protocol, see `info`
+    /// Replay the champion in the cases of a protocol, see `info`
     #[arg(long, value_name = "NAME", conflicts_with_all = ["generation", "individual"])]
     protocol: Option<String>,
     #[command(flatten)]
     cases: CaseArgs,
     #[command(flatten)]
     pub(crate) world: WorldArgs,
-    /// Change parts of the controller, such as neuron:3,link:2-5,sensor:touch (a page shows both trials)
+    /// Change parts of the controller, such as neuron:3,link:2-5,sensor:touch
     #[arg(long, value_name = "LIST", conflicts_with_all = ["compare", "protocol"])]
     pub(crate) lesion: Option<String>,
-    /// A new file for the steps as CSV [default: standard output]
+    /// Move or push bodies, as a page's script does
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["compare", "protocol"], value_hint = ValueHint::FilePath)]
+    pub(crate) changes: Option<PathBuf>,
+    /// A new CSV file of the steps [default: standard output]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) out: Option<PathBuf>,
     /// A page for a browser (replaces only its earlier version)
     #[arg(long, value_name = "FILE", conflicts_with = "out", value_hint = ValueHint::FilePath)]
     pub(crate) html: Option<PathBuf>,
-    /// Another run, whose trial the page shows for comparison
+    /// Another run for comparison in the page
     #[arg(long, value_name = "DIR", requires = "html", value_hint = ValueHint::DirPath)]
     pub(crate) compare: Option<PathBuf>,
     /// Write the summary as JSON, to standard error without --out or --html
@@ -354,26 +354,10 @@ pub(crate) struct LiveArgs {
     /// This individual of each generation, from 0 [default: the best]
     #[arg(long, value_name = "N", value_parser = whole(0..=u32::MAX))]
     pub(crate) individual: Option<u32>,
-    /// A WebAssembly module of the experiments, compressed by gzip [default: this program's]
+    /// A WebAssembly module of the experiments [default: this program's]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) module: Option<PathBuf>,
     /// Write the summary as JSON
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-#[derive(Args)]
-pub(crate) struct ServeArgs {
-    /// The run's directory
-    #[arg(value_hint = ValueHint::DirPath)]
-    pub(crate) directory: PathBuf,
-    /// The port of 127.0.0.1, 0 for any free one
-    #[arg(long, value_name = "N", default_value_t = 8377, value_parser = whole(0..=u16::MAX))]
-    pub(crate) port: u16,
-    /// A WebAssembly module of the experiments, compressed by gzip [default: this program's]
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) module: Option<PathBuf>,
-    /// Write the address as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

@@ -79,3 +79,20 @@ pub(in crate::live) fn event(name: &str, number: Option<usize>, data: &impl Seri
     let number = number.map_or_else(String::new, |number| format!("id: {number}\n"));
     Ok(format!("event: {name}\n{number}data: {}\n\n", json(data)?).into())
 }
+
+/// Returns a page with the reason for which there is no other. It asks again after some seconds.
+pub(in crate::live) fn absence(why: &str, seconds: u32) -> String {
+    let page = maud::html! {
+        (maud::DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="color-scheme" content="light dark";
+                meta http-equiv="refresh" content=(seconds);
+                title { "no page" }
+            }
+            body { p { (why) } }
+        }
+    };
+    page.into_string()
+}

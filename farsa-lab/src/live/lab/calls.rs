@@ -1,28 +1,45 @@
 //! Requests of the page and their effects.
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::sync::{Arc, Mutex, TryLockError};
+use std::thread;
+use std::time::{Duration, UNIX_EPOCH};
 
 use farsa_view::LabPage;
 use hyper::body::Bytes;
 use serde::Serialize;
 use serde_json::json;
+use serde_json::value::RawValue;
 use tokio::sync::oneshot;
 
+use crate::live::http::answer::{absence, event};
 use crate::live::http::origin::parameter;
-use crate::live::lab::command_line::about;
+use crate::live::lab::command_line::{about, served};
 use crate::live::lab::facts::{Facts, RunFacts};
-use crate::live::lab::folder::{EXPORTS, Folder, PAGES};
+use crate::live::lab::folder::{EXPORTS, Folder, GALLERY, PAGES, RUNS};
 use crate::live::lab::names::{Refusal, decoded, name};
 use crate::live::lab::program::{Program, ProgramFacts};
 use crate::live::lab::queue::Queue;
+use crate::live::run_mark::FileMark;
 use crate::run::laboratory::MAX_BYTES;
 use crate::shell::quoted;
 use crate::store::bounded::{read_regular, read_regular_text};
 
 /// Bytes of the largest page or export that is served.
 const MAX_FILE: u64 = 256 << 20;
-/// Type of answers with data.
+/// Most runs whose last event is stored.
+const MAX_EVENTS: usize = 64;
+/// First part of the addresses of champions' pages.
+const CHAMPION: &str = "champion";
+/// Repeated attempts to read a champion while its run replaces files, and the time between them.
+const TRIES: usize = 2;
+/// Time after which a page without a champion asks again [s]. Each answer takes a process.
+const RETRY: u32 = 10;
+const INTERVAL: Duration = Duration::from_millis(300);
+/// Types of answers with a page and with data.
+const HTML: &str = "text/html; charset=utf-8";
 pub(super) const JSON: &str = "application/json";
 
 /// A request with its answer.
@@ -34,8 +51,18 @@ pub(super) struct Task {
 /// A request that was allowed.
 #[derive(Debug)]
 pub(super) enum Call {
-    Get { path: String, query: String },
-    Post { path: String, body: Bytes },
+    Get {
+        path: String,
+        query: String,
+    },
+    Post {
+        path: String,
+        body: Bytes,
+    },
+    /// Reads the present champions of a run for its events.
+    Champions {
+        run: String,
+    },
 }
 
 /// Answer of a request.
@@ -72,6 +99,8 @@ pub(super) struct Bench {
     pub(super) about: ProgramFacts,
     pub(super) queue: Arc<Queue>,
     facts: Facts,
+    /// Last event with champions of each run, with the mark of its checkpoint.
+    champions: Mutex<BTreeMap<String, (FileMark, Bytes)>>,
     pub(super) read_only: bool,
 }
 
@@ -83,13 +112,14 @@ impl Bench {
         queue: Arc<Queue>,
         read_only: bool,
     ) -> Self {
-        Self { folder, program, about, queue, facts: Facts::default(), read_only }
+        Self { folder, program, about, queue, facts: Facts::default(), champions: Mutex::default(), read_only }
     }
 
     /// Answers a request.
     pub(super) fn answer(&self, call: &Call) -> Reply {
         let answer = match call {
             Call::Get { path, query } => self.get(path, query),
+            Call::Champions { run } => self.champions(run),
             Call::Post { path, body } if path == "/api/check" => self.check(body),
             Call::Post { .. } if self.read_only => {
                 Err(Refusal::new(403, "this laboratory was started with --read-only"))
@@ -136,13 +166,16 @@ impl Bench {
         Ok(Reply { status: 200, kind, content: self.program.output(words, input)?.into() })
     }
 
-    /// Returns a page or an export of the folder.
+    /// Returns a page or an export of the folder, or the page of a run's present champion.
     fn file(&self, path: &str) -> Result<Reply, Refusal> {
         let absent = || Refusal::new(404, "no such page");
         let (folder, file) = path.strip_prefix("/files/").and_then(|rest| rest.split_once('/')).ok_or_else(absent)?;
         // Only in a query is a plus sign a space.
         let file = decoded(&file.replace('+', "%2B")).ok_or_else(absent)?;
-        if ![PAGES, EXPORTS].contains(&folder) {
+        if folder == CHAMPION {
+            return self.champion(name(&file)?);
+        }
+        if ![PAGES, EXPORTS, GALLERY].contains(&folder) {
             return Err(absent());
         }
         let place = self.folder.place(&[folder, name(&file)?])?;
@@ -150,12 +183,60 @@ impl Bench {
             return Err(absent());
         }
         let content = read_regular(&place, MAX_FILE).map_err(|error| Refusal::new(500, error))?;
-        let is_page = place.extension().is_some_and(|end| end == "html");
-        let kind = if is_page { "text/html; charset=utf-8" } else { "application/octet-stream" };
+        let kind = if is_page(&place) { HTML } else { "application/octet-stream" };
         Ok(Reply { status: 200, kind, content: content.into() })
     }
 
-    /// Lists experiments and runs.
+    /// Returns the page of a run's present champion, or a page with the reason for its absence.
+    fn champion(&self, run: &str) -> Result<Reply, Refusal> {
+        self.folder.run(run)?;
+        let words = self.program.with_module(served(run, "page"));
+        let mut page = self.program.output(&words, None);
+        for _ in 0..TRIES {
+            if page.is_ok() {
+                break;
+            }
+            // The files of a running run may just have been replaced.
+            thread::sleep(INTERVAL);
+            page = self.program.output(&words, None);
+        }
+        let (status, content) = match page {
+            Ok(content) => (200, content.into()),
+            Err(Refusal { status, why }) => (status, absence(&why, RETRY).into()),
+        };
+        Ok(Reply { status, kind: HTML, content })
+    }
+
+    /// Reads the mark of a run's last checkpoint.
+    pub(super) fn checkpoint(&self, run: &str) -> Option<FileMark> {
+        FileMark::read(&self.folder.place(&[RUNS, run, "checkpoint.bin"]).ok()?)
+    }
+
+    /// Returns the event with the present champions of a run. Only one worker reads champions at a time.
+    fn champions(&self, run: &str) -> Result<Reply, Refusal> {
+        let mut events = match self.champions.try_lock() {
+            Ok(events) => events,
+            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => return Err(Refusal::new(503, "champions are being read")),
+        };
+        let mark = self.checkpoint(run).ok_or_else(|| Refusal::new(404, "no generation is finished yet"))?;
+        let stored = events.get(run).filter(|(known, _)| *known == mark).map(|(_, event)| event.clone());
+        let content = if let Some(event) = stored {
+            event
+        } else {
+            let words = self.program.with_module(served(run, "champions"));
+            let text = String::from_utf8_lossy(&self.program.output(&words, None)?).into_owned();
+            let data = RawValue::from_string(text).map_err(|error| Refusal::new(500, error))?;
+            event("champions", None, &data).map_err(|error| Refusal::new(500, error))?
+        };
+        if events.len() >= MAX_EVENTS {
+            events.clear();
+        }
+        events.insert(run.to_owned(), (mark, content.clone()));
+        Ok(Reply { status: 200, kind: "text/event-stream", content })
+    }
+
+    /// Lists experiments, pages of the gallery and runs.
     fn list(&self) -> Result<Reply, Refusal> {
         let runs = self.folder.runs();
         let mut facts: Vec<RunFacts> = runs.iter().filter_map(|run| self.facts_of(run)).collect();
@@ -172,6 +253,7 @@ impl Bench {
             "read_only": self.read_only,
             "experiments": self.about.experiments,
             "files": files,
+            "gallery": self.gallery(),
             "templates": templates,
             "runs": facts,
         }))
@@ -179,14 +261,26 @@ impl Bench {
 
     /// Describes an experiment file by its summary. Sweeps and configurations of runs are left out.
     fn described(&self, file: &str) -> Option<serde_json::Value> {
-        let text = read_regular_text(&self.folder.experiment(file).ok()?, MAX_BYTES).ok()?;
+        let path = self.folder.experiment(file).ok()?;
+        let text = read_regular_text(&path, MAX_BYTES).ok()?;
         match toml::from_str::<toml::Table>(&text) {
             Ok(table) => {
                 let summary = table.get("summary").and_then(toml::Value::as_str)?;
-                Some(json!({ "name": file, "summary": summary }))
+                Some(json!({ "name": file, "summary": summary, "modified": modified(&path) }))
             }
-            Err(_) => Some(json!({ "name": file, "summary": "", "broken": true })),
+            Err(_) => Some(json!({ "name": file, "summary": "", "broken": true, "modified": modified(&path) })),
         }
+    }
+
+    /// Lists the pages of the gallery, except the one that shows them all.
+    fn gallery(&self) -> Vec<serde_json::Value> {
+        let mut files = self.folder.files(GALLERY);
+        files.retain(|file| is_page(Path::new(file)) && file != "index.html");
+        let page = |file: &String| {
+            let path = self.folder.place(&[GALLERY, file]).ok()?;
+            Some(json!({ "name": file, "modified": modified(&path) }))
+        };
+        files.iter().filter_map(page).collect()
     }
 
     /// Summarizes a run of the folder or of the queue.
@@ -253,4 +347,15 @@ impl Bench {
         let (kind, text) = LabPage::file(path)?;
         Some(Reply { status: 200, kind, content: Bytes::from_static(text.as_bytes()) })
     }
+}
+
+/// Checks if a file is a page.
+fn is_page(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end == "html")
+}
+
+/// Returns the time of a file's last change [s since 1970].
+fn modified(path: &Path) -> Option<u64> {
+    let changed = fs::metadata(path).ok()?.modified().ok()?;
+    changed.duration_since(UNIX_EPOCH).ok().map(|time| time.as_secs())
 }

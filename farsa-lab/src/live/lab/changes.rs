@@ -168,7 +168,10 @@ impl Bench {
             self.folder.run(run)?;
         }
         self.folder.made(&[PAGES])?;
-        let (file, words) = (request.file(), request.words());
+        let (file, mut words) = (request.file(), request.words());
+        if request.is_live() {
+            words = self.program.with_module(words);
+        }
         self.folder.place(&[PAGES, &file])?;
         self.program.output(&words, None)?;
         Reply::json(&json!({ "file": format!("{PAGES}/{file}"), "command": self.line(&words) }))

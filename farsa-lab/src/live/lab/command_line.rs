@@ -176,6 +176,10 @@ impl PageRequest {
         Ok(())
     }
 
+    pub(super) fn is_live(&self) -> bool {
+        self.kind == PageKind::Live
+    }
+
     /// Returns the name of the page's file.
     pub(super) fn file(&self) -> String {
         let kind = match self.kind {
@@ -196,11 +200,11 @@ impl PageRequest {
         };
         let mut words = vec![command.to_owned()];
         words.extend(self.runs.iter().map(|run| place(run)));
-        if self.kind == PageKind::Live && !self.generations.is_empty() {
+        if self.is_live() && !self.generations.is_empty() {
             let list: Vec<String> = self.generations.iter().map(u32::to_string).collect();
             words.extend(["--generations".to_owned(), list.join(",")]);
         }
-        if let Some(individual) = self.individual.filter(|_| self.kind == PageKind::Live) {
+        if let Some(individual) = self.individual.filter(|_| self.is_live()) {
             words.extend(["--individual".to_owned(), individual.to_string()]);
         }
         words.extend(["--html".to_owned(), format!("{PAGES}/{}", self.file()), "--json".to_owned()]);
@@ -310,6 +314,11 @@ impl ExportRequest {
         words.extend(["--out".to_owned(), format!("{EXPORTS}/{file}")]);
         words
     }
+}
+
+/// Returns the arguments of the command that prints a part of a run's page.
+pub(super) fn served(run: &str, part: &str) -> Vec<String> {
+    vec!["serve".into(), place(run), "--print".into(), part.into()]
 }
 
 /// Returns the directory of a run in the folder.

@@ -14,6 +14,8 @@ const OWN: &str = ".lab";
 pub(super) const RUNS: &str = "runs";
 pub(super) const PAGES: &str = "pages";
 pub(super) const EXPORTS: &str = "exports";
+/// Folder of pages that are shown with the experiments.
+pub(super) const GALLERY: &str = "gallery";
 const TRASH: &str = ".trash";
 /// Most entries of a folder that are listed.
 const MAX_ENTRIES: usize = 20_000;

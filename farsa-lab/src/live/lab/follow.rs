@@ -1,4 +1,4 @@
-//! Event stream of a run: new generations, and its state whenever it changes.
+//! Event stream of a run: new generations and champions, and its state whenever it changes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,6 +8,7 @@ use hyper::body::Bytes;
 use crate::live::http::answer::event;
 use crate::live::http::paced::{Events, Next, REPLACED};
 use crate::live::lab::calls::Bench;
+use crate::live::lab::champions::Champions;
 use crate::live::log_tail::{LogTail, Part};
 
 /// Place of an open event stream.
@@ -39,6 +40,7 @@ pub(super) struct Follow {
     bench: Arc<Bench>,
     run: String,
     tail: LogTail,
+    champions: Champions,
     /// True if the log was read to its end in this interval. The state is next.
     is_read: bool,
     /// State that was sent last.
@@ -47,14 +49,17 @@ pub(super) struct Follow {
 
 impl Follow {
     /// Starts the events of a run after the given number of generations.
-    pub(super) fn new(listener: Listener, bench: Arc<Bench>, run: &str, tail: LogTail) -> Self {
+    pub(super) fn new(listener: Listener, bench: Arc<Bench>, run: &str, tail: LogTail, champions: Champions) -> Self {
         let (run, state) = (run.to_owned(), Bytes::new());
-        Self { _listener: listener, bench, run, tail, is_read: false, state }
+        Self { _listener: listener, bench, run, tail, champions, is_read: false, state }
     }
 }
 
 impl Events for Follow {
     fn next(&mut self) -> Next {
+        if let Some(event) = self.champions.event(&self.bench, &self.run) {
+            return Next::Event(event, true);
+        }
         // A log that is being written is read in the next interval.
         let part = if self.is_read { Ok(Part::Rows(Vec::new(), false)) } else { self.tail.read() };
         self.is_read = !matches!(part, Ok(Part::Rows(_, true)));

@@ -26,6 +26,8 @@ pub(crate) use program::ProgramFacts;
 
 /// Requests of the page and their effects.
 mod calls;
+/// Champions of a run as events.
+mod champions;
 /// Changes that a request asks of the folder.
 mod changes;
 /// Command lines of requests.
@@ -61,6 +63,8 @@ pub(crate) struct LabOptions<'o> {
     pub(crate) port: u16,
     /// Most processes at once.
     pub(crate) jobs: usize,
+    /// Module of interactive pages, instead of the program's.
+    pub(crate) module: Option<&'o Path>,
     pub(crate) read_only: bool,
 }
 
@@ -74,7 +78,7 @@ pub(crate) fn serve(
     facts: ProgramFacts,
     begun: impl FnOnce(&str) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let LabOptions { folder: path, port, jobs, read_only } = options;
+    let LabOptions { folder: path, port, jobs, module, read_only } = options;
     let unusable = |error| Error::Usage(format!("{}: {error}", path.display()));
     let folder = Folder::new(fs::canonicalize(path).map_err(unusable)?);
     if !folder.path().is_dir() {
@@ -86,7 +90,7 @@ pub(crate) fn serve(
     let name = address.to_string();
     let failed = || Error::io("listen to", name.as_ref());
     let _claim = if read_only { None } else { Some(claim(&folder)?) };
-    let program = Program::here(&folder)?;
+    let program = Program::here(&folder, module)?;
     let queue = Arc::new(Queue::open(&folder, program.clone(), jobs, read_only)?);
     let bench = Arc::new(Bench::new(folder, program, facts, queue.clone(), read_only));
     let token = Token::new()?;

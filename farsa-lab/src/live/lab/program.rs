@@ -1,8 +1,8 @@
 //! Processes of this program, which do all that needs the command.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use crate::error::Error;
@@ -25,17 +25,28 @@ pub(crate) struct ProgramFacts {
 pub(super) struct Program {
     path: PathBuf,
     folder: PathBuf,
+    /// Module of interactive pages, instead of the program's.
+    module: Option<PathBuf>,
 }
 
 impl Program {
     /// Finds the program of this process.
     ///
     /// # Errors
-    /// [`Error::Other`] where the system does not name it.
-    pub(super) fn here(folder: &Folder) -> Result<Self, Error> {
+    /// [`Error::Usage`] for a missing module, and [`Error::Other`] where the system does not name the program.
+    pub(super) fn here(folder: &Folder, module: Option<&Path>) -> Result<Self, Error> {
         let path = std::env::current_exe();
         let path = path.map_err(|error| Error::Other(format!("the program of this process: {error}")))?;
-        Ok(Self { path, folder: folder.path().into() })
+        let absolute = |module: &Path| {
+            fs::canonicalize(module).map_err(|error| Error::Usage(format!("{}: {error}", module.display())))
+        };
+        Ok(Self { path, folder: folder.path().into(), module: module.map(absolute).transpose()? })
+    }
+
+    /// Adds the module to the words of a command that makes an interactive page.
+    pub(super) fn with_module(&self, mut words: Vec<String>) -> Vec<String> {
+        words.extend(self.module.iter().flat_map(|module| ["--module".to_owned(), module.display().to_string()]));
+        words
     }
 
     fn command(&self, words: &[String]) -> Command {

@@ -22,6 +22,7 @@ use crate::live::http::connections::Activity;
 use crate::live::http::origin::{is_same_origin, parameter, response};
 use crate::live::http::server::Service;
 use crate::live::lab::calls::{Bench, Call, JSON, Reply, Task};
+use crate::live::lab::champions::Champions;
 use crate::live::lab::folder::RUNS;
 use crate::live::lab::follow::{Follow, Listener};
 use crate::live::lab::names::{Refusal, decoded, name};
@@ -105,7 +106,8 @@ impl Site {
         let from = from.ok_or_else(|| Refusal::invalid("from is a number of generations"))?;
         let listener = Listener::new(&self.listeners, self.most_listeners);
         let listener = listener.ok_or_else(|| Refusal::new(503, "too many pages are open"))?;
-        Ok(Follow::new(listener, self.bench.clone(), &run, LogTail::new(log, from)))
+        let champions = Champions::new(self.tasks.clone());
+        Ok(Follow::new(listener, self.bench.clone(), &run, LogTail::new(log, from), champions))
     }
 
     async fn reply(&self, request: Request<Incoming>) -> Result<Reply, Refusal> {

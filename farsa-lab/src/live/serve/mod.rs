@@ -13,10 +13,13 @@ use crate::live::serve::publisher::Publisher;
 use crate::live::serve::site::Site;
 use crate::live::serve::state::Shared;
 
+pub(crate) use part::PagePart;
 pub(crate) use publisher::Served;
 
 /// Event stream of a listener.
 mod events;
+/// Parts of a page as text.
+mod part;
 /// Pages and champions.
 mod publisher;
 /// Addresses of the server.

@@ -9,7 +9,7 @@ use hyper::header::HeaderMap;
 use hyper::{Method, Request, Response};
 use tokio::sync::oneshot;
 
-use crate::live::http::answer::Answer;
+use crate::live::http::answer::{Answer, absence};
 use crate::live::http::connections::Activity;
 use crate::live::http::origin::{is_same_origin, parameter, response};
 use crate::live::http::server::Service;
@@ -54,7 +54,7 @@ impl Site {
         };
         let (status, content) = match page {
             Ok(html) => (200, html),
-            Err(Unavailable { status, why }) => (status, waiting(&why).into()),
+            Err(Unavailable { status, why }) => (status, absence(&why, 1).into()),
         };
         Text { status, kind: "text/html; charset=utf-8", content }
     }
@@ -112,20 +112,4 @@ fn after(headers: &HeaderMap, query: &str) -> Option<usize> {
         Some(last) => last.to_str().ok()?.parse().ok(),
         None => parameter(query, "from")?.parse().ok(),
     }
-}
-
-/// Returns a page with the reason, which reloads itself.
-fn waiting(why: &str) -> String {
-    let page = maud::html! {
-        (maud::DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="refresh" content="1";
-                title { "farsa serve" }
-            }
-            body { p { (why) } }
-        }
-    };
-    page.into_string()
 }
