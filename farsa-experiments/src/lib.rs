@@ -14,11 +14,11 @@ pub mod reach_grasp_lift;
 mod smooth;
 mod strategy;
 pub mod walking;
-mod wheeled;
 mod worlds;
 
 pub use embedded::{
-    AGGREGATION, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment, FORAGING, PREDATOR_PREY,
+    AGGREGATION, ANT, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment, FORAGING, G1_WALK,
+    GO1_JOYSTICK, HALF_CHEETAH, HOPPER, HUMANOID, ModelExperiment, PREDATOR_PREY, WALKER2D,
 };
 pub use farsa_compose::Reflex;
 
@@ -34,7 +34,7 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
 }
 
 /// Returns all experiments in the order of the `farsa list` command.
-pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 23] {
     [
         &reach_grasp_lift::ReachGraspLift,
         &compositional_instructions::CompositionalInstructions,
@@ -52,5 +52,12 @@ pub fn all() -> [&'static dyn farsa_lab::Experiment; 16] {
         &push_box::PushBox,
         &walking::passive_walker::PassiveWalker,
         &walking::body_evolution::BodyEvolution,
+        &HOPPER,
+        &WALKER2D,
+        &HALF_CHEETAH,
+        &ANT,
+        &HUMANOID,
+        &GO1_JOYSTICK,
+        &G1_WALK,
     ]
 }

@@ -7,7 +7,10 @@ use std::sync::Arc;
 use farsa_body::robots::Tabletop;
 use farsa_evo::words::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
-use farsa_experiments::{AGGREGATION, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, FORAGING, PREDATOR_PREY};
+use farsa_experiments::{
+    AGGREGATION, ANT, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, FORAGING, G1_WALK, GO1_JOYSTICK,
+    HALF_CHEETAH, HOPPER, HUMANOID, PREDATOR_PREY, WALKER2D,
+};
 use farsa_lab::advanced::{Displacement, Genotype, Lanes, Push, Value, run_episode, run_in_lanes};
 use farsa_lab::{Episode, EpisodeId, Evaluation, Evaluator, Experiment, Outcome, Settings};
 use farsa_num::{Domain, Instructions, Stream};
@@ -152,6 +155,15 @@ fn trials_of_networks_in_lanes_are_those_alone() {
 ///
 /// Where there are several populations, every other trial is one of the second.
 fn wheels(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]) -> Vec<Outcome> {
+    trials(experiment, condition, values, arena::Batch::instructions())
+}
+
+fn trials(
+    experiment: &dyn Experiment,
+    condition: &str,
+    values: &[(&str, Value)],
+    instructions: impl Iterator<Item = Instructions>,
+) -> Vec<Outcome> {
     let mut settings = Settings::new(experiment.settings(condition)).unwrap();
     for (key, value) in values {
         settings.set("", key, value.clone()).unwrap();
@@ -170,7 +182,7 @@ fn wheels(experiment: &dyn Experiment, condition: &str, values: &[(&str, Value)]
         Evaluation { number, opponents, ..Evaluation::new(&parameters[number], id) }
     };
     let evaluations: Vec<Evaluation> = (0..21).map(evaluation).collect();
-    let alone = in_lanes_as_alone(evaluator.as_mut(), arena::Batch::instructions(), &evaluations);
+    let alone = in_lanes_as_alone(evaluator.as_mut(), instructions, &evaluations);
     println!("{} {condition}: {alone:?}", experiment.name());
     assert!(alone.iter().any(|outcome| *outcome != alone[0]), "all the same: {alone:?}");
     alone
@@ -218,4 +230,15 @@ fn teams_in_lanes_are_those_alone() {
 #[test]
 fn predators_and_prey_in_lanes_are_those_alone() {
     some_end_early(&wheels(&PREDATOR_PREY, "", &[steps(200)]), 200);
+}
+
+#[test]
+fn walkers_in_lanes_are_those_alone() {
+    let values = [("episode.steps", Value::Whole(20))];
+    let mut all = Vec::new();
+    for experiment in [&HOPPER, &WALKER2D, &HALF_CHEETAH, &ANT, &HUMANOID, &GO1_JOYSTICK, &G1_WALK] {
+        let condition = experiment.conditions().first().copied().unwrap_or_default();
+        all.extend(trials(experiment, condition, &values, articulated::Batch::instructions()));
+    }
+    some_end_early(&all, 20);
 }

@@ -5,9 +5,11 @@
 
 mod experiment;
 mod infrared;
+mod model;
 mod settings;
 
 pub use experiment::EmbeddedExperiment;
+pub use model::ModelExperiment;
 
 use farsa_body::robots::MobileRobot;
 use farsa_lab::{Error, Settings};
@@ -84,6 +86,66 @@ pub static AGGREGATION: EmbeddedExperiment = EmbeddedExperiment::new(
     include_str!("../../experiments/aggregation.toml"),
     include_str!("../../experiments/aggregation.settings.toml"),
     nests_fit,
+);
+
+/// A torso on one leg hops forward \[Towers2024, Hopper-v5\].
+///
+/// Rewards, ends and starts are those of Gymnasium. Its XML is read with `robot.model`, and the model of this crate has the same
+/// names. The condition `no-bonus` has no reward for staying upright, and `way` has neither this nor a price of torques.
+pub static HOPPER: ModelExperiment = ModelExperiment::new(
+    "hopper",
+    include_str!("../../experiments/locomotion/hopper.toml"),
+    include_str!("../../experiments/locomotion/hopper.xml"),
+);
+
+/// A torso on two legs walks forward, as [`HOPPER`] \[Towers2024, Walker2d-v5\].
+pub static WALKER2D: ModelExperiment = ModelExperiment::new(
+    "walker2d",
+    include_str!("../../experiments/locomotion/walker2d.toml"),
+    include_str!("../../experiments/locomotion/walker2d.xml"),
+);
+
+/// A back on a hind and a fore leg runs forward, as [`HOPPER`] \[Towers2024, HalfCheetah-v5\].
+pub static HALF_CHEETAH: ModelExperiment = ModelExperiment::new(
+    "half-cheetah",
+    include_str!("../../experiments/locomotion/half-cheetah.toml"),
+    include_str!("../../experiments/locomotion/half-cheetah.xml"),
+);
+
+/// A ball on four legs runs forward, as [`HOPPER`] \[Towers2024, Ant-v5\].
+///
+/// Neither the observation nor the reward contains contact forces.
+pub static ANT: ModelExperiment = ModelExperiment::new(
+    "ant",
+    include_str!("../../experiments/locomotion/ant.toml"),
+    include_str!("../../experiments/locomotion/ant.xml"),
+);
+
+/// A body of two legs and two arms walks forward, as [`HOPPER`] \[Towers2024, Humanoid-v5\].
+///
+/// The observation has positions and velocities. The way is that of the torso instead of the center of mass, and contact
+/// forces have no price.
+pub static HUMANOID: ModelExperiment = ModelExperiment::new(
+    "humanoid",
+    include_str!("../../experiments/locomotion/humanoid.toml"),
+    include_str!("../../experiments/locomotion/humanoid.xml"),
+);
+
+/// A quadruped walks and turns at commanded speeds \[Zakka2025\].
+///
+/// The model of this crate has the size of a Go1. The Go1 of the Playground is read with `robot.model`. Speeds, posture and
+/// actions are those of the Playground. Rewards are for speed, turn, height and effort, and a clock gives the rhythm of steps.
+pub static GO1_JOYSTICK: ModelExperiment = ModelExperiment::new(
+    "go1-joystick",
+    include_str!("../../experiments/locomotion/go1-joystick.toml"),
+    include_str!("../../experiments/locomotion/go1-joystick.xml"),
+);
+
+/// A humanoid walks at a commanded speed, as [`GO1_JOYSTICK`] \[Zakka2025\].
+pub static G1_WALK: ModelExperiment = ModelExperiment::new(
+    "g1-walk",
+    include_str!("../../experiments/locomotion/g1-walk.toml"),
+    include_str!("../../experiments/locomotion/g1-walk.xml"),
 );
 
 /// Rejects nests without a size, and nests that cannot have their distance from all walls.

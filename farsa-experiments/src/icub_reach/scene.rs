@@ -101,7 +101,7 @@ impl Scene {
             let name = format!("load on {}", segment.joint.name);
             let law = Law::Torque(Torque { limit: LARGEST_TORQUE });
             burdened.push(Burdened { body, axis, actuator: ActuatorId(robot.actuators.len() as u16) });
-            robot.actuators.push(Actuator { name, joint: JointId(body.0), law });
+            robot.actuators.push(Actuator { name, joint: JointId(body.0), law, command_range: None });
         }
         burdened
     }

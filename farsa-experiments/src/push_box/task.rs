@@ -6,11 +6,10 @@ use farsa_nn::Perceptron;
 
 use crate::push_box::episode::{OUTPUTS, PushEpisode};
 use crate::push_box::layer::{applied, layer_protocols, wheel_exports};
-use crate::wheeled::infrared_exports;
 use farsa_lab::advanced::{
     Anatomy, Behavior, ChannelGroup, Description, NormalizedController, NotedBehavior, Rollout, mean_of_trials,
 };
-use farsa_lab::exports::{ControllerExport, Exports, NetworkExport};
+use farsa_lab::exports::{ControllerExport, Exports, NetworkExport, SensorExport, SensorReading};
 use farsa_lab::{Combination, Error, Evaluation, Note, Outcome, Parameter, Task, TaskInfo};
 use farsa_view::shape::{Geometry, Role, SceneObject, screen_color};
 use farsa_view::{Channel, Links, NodeParameters, Schema};
@@ -133,8 +132,16 @@ impl Exports for PushEpisode<Layer> {
         }
         let (robot, parameters) = (&config.robot, parameters.into());
         let network = NetworkExport::Perceptron { inputs, outputs: OUTPUTS, slope: 1.0, parameters };
-        let eyes = (1..=inputs).map(|number| format!("infrared {number}"));
-        let sensors = infrared_exports(eyes, &robot.infrared.angles, robot).collect();
+        let range = robot.infrared.range;
+        let sensor = |(place, angle): (usize, &f64)| {
+            let degrees = angle.to_degrees();
+            let quantity = format!("distance of a wall from the hull at {degrees:+.1} degrees, left positive");
+            SensorExport {
+                name: format!("infrared {}", place + 1),
+                reads: SensorReading::Quantity { quantity, unit: "m", zero: range, one: 0.0, linear: true },
+            }
+        };
+        let sensors = robot.infrared.angles.iter().take(inputs).enumerate().map(sensor).collect();
         let motors = wheel_exports(robot.max_wheel_speed);
         Some(ControllerExport::new(network, sensors, motors, config.time_step, config.steps))
     }

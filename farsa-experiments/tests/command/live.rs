@@ -164,7 +164,11 @@ fn runs_without_a_page_are_refused_and_write_nothing() {
         (own(), "live cart --html new.html", "this program has no module for pages: give one with --module"),
         (farsa(), "live foreign --html new.html", "world `rapier`: pages that run an agent are without it"),
         (farsa(), "serve foreign --port 0", "world `rapier`: pages that run an agent are without it"),
-        (farsa(), "live catcher --html new.html --module module", "the module is not compressed by gzip"),
+        (
+            farsa(),
+            "live catcher --html new.html --module module",
+            "module: is no WebAssembly module, neither a plain one nor one",
+        ),
         (farsa(), "live catcher --html new.html --module nowhere", "nowhere"),
         (farsa(), "live catcher --html new.html --generations 3", "generation 3 of 1 finished ones"),
         (farsa(), "live catcher --html notes.html --generations 3", "there is one already"),
@@ -176,11 +180,14 @@ fn runs_without_a_page_are_refused_and_write_nothing() {
     }
     assert!(!here.join("new.html").exists());
     assert_eq!(fs::read(here.join("notes.html")).expect("the file"), b"mine");
-    // A custom module is stored unchanged.
+    // A compressed module is stored unchanged, and a plain one compressed.
     fs::write(here.join("module"), [0x1f, 0x8b, 0]).expect("a file");
     ok(farsa(), &here, "live catcher --html new.html --module module --quiet");
     let live = &data(&here.join("new.html"))["live"];
     assert_eq!(live["module"], "H4sA");
+    fs::write(here.join("module"), b"\0asm").expect("a file");
+    ok(farsa(), &here, "live catcher --html new.html --module module --quiet");
+    assert!(decoded(&data(&here.join("new.html"))["live"]["module"]).starts_with(&[0x1f, 0x8b]));
 }
 
 #[test]

@@ -158,6 +158,7 @@ fn files_of_the_command_line_are_missing_or_damaged() {
         "merge none",
         "live r --module none --html page.html",
         "serve r --module none",
+        "lab folder --module none",
         "man --out text.txt/a",
         "test none",
     ];

@@ -107,6 +107,13 @@ fn subjects() -> Vec<Subject> {
             "aggregation",
             "predator-prey",
             "push-box",
+            "hopper",
+            "walker2d",
+            "half-cheetah",
+            "ant",
+            "humanoid",
+            "go1-joystick",
+            "g1-walk",
         ]
     );
     all
