@@ -4,8 +4,23 @@
     champion.py check MODEL.xml CONTROLLER.json TRIAL.csv
     champion.py test MODEL.xml CONTROLLER.json STARTS.json [--step S]... [--beside NAME=test.csv]...
 
-The files are those of `farsa export robot E --format mjcf`, `farsa export controller RUN --format json`, `farsa export
-starts RUN --format json`, `farsa replay RUN --out TRIAL.csv` and `farsa test RUN`. Nothing here shares code with FARSA; what
+Commands for a test:
+
+    farsa run reach-grasp-lift --seed 1 --out run
+    farsa test run --trials 100
+    farsa export robot reach-grasp-lift --format mjcf --out robot.xml
+    farsa export controller run --format json --out controller.json
+    farsa export starts run --trials 100 --format json --out starts.json
+    champion.py test robot.xml controller.json starts.json --beside ours=run/test.csv
+
+A check of the sensors records a trial with converged contacts (400 sweeps instead of 10):
+
+    farsa run reach-grasp-lift --seed 1 --generations 2 --set world.sweeps=400 --out converged
+    farsa replay converged --out converged.csv
+    farsa export controller converged --format json --out converged.json
+    champion.py check robot.xml converged.json converged.csv
+
+Nothing here shares code with FARSA; what
 is restated (phases, muscles, network) follows the printed equations. See README.md."""
 
 import argparse
