@@ -176,7 +176,7 @@ mod tests {
         let at = Pose::planar([1.0, 2.0], 0.5);
         let body = robot.add_sliding_body("ball", at, MassProperties::sphere(0.3, 0.06), true);
         let wanted = at.compose(&Pose::planar([0.25, -0.5], 0.75));
-        let found = keyframe(&robot, &BTreeMap::from([(body.index(), wanted)])).expect("a keyframe");
+        let found = keyframe(&robot, &BTreeMap::from([(body.index(), wanted)]), |_| None).expect("a keyframe");
         assert_eq!(found.joints.len(), 3);
         for (found, wanted) in found.joints.iter().zip([0.25, -0.5, 0.75]) {
             assert!((found - wanted).abs() < 1e-12, "{found} {wanted}");
