@@ -17,8 +17,8 @@ pub mod walking;
 mod worlds;
 
 pub use embedded::{
-    AGGREGATION, ANT, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment, FORAGING, G1_WALK,
-    GO1_JOYSTICK, HALF_CHEETAH, HOPPER, HUMANOID, ModelExperiment, PREDATOR_PREY, WALKER2D,
+    AGGREGATION, ANT, ANT_OMNI, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, EmbeddedExperiment, FORAGING,
+    G1_WALK, GO1_JOYSTICK, HALF_CHEETAH, HOPPER, HUMANOID, ModelExperiment, PREDATOR_PREY, WALKER2D,
 };
 pub use farsa_compose::Reflex;
 
@@ -34,7 +34,7 @@ pub fn laboratory() -> farsa_lab::Laboratory<'static> {
 }
 
 /// Returns all experiments in the order of the `farsa list` command.
-pub fn all() -> [&'static dyn farsa_lab::Experiment; 23] {
+pub fn all() -> [&'static dyn farsa_lab::Experiment; 24] {
     [
         &reach_grasp_lift::ReachGraspLift,
         &compositional_instructions::CompositionalInstructions,
@@ -56,6 +56,7 @@ pub fn all() -> [&'static dyn farsa_lab::Experiment; 23] {
         &WALKER2D,
         &HALF_CHEETAH,
         &ANT,
+        &ANT_OMNI,
         &HUMANOID,
         &GO1_JOYSTICK,
         &G1_WALK,

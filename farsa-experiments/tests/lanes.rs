@@ -8,7 +8,7 @@ use farsa_body::robots::Tabletop;
 use farsa_evo::words::randomize;
 use farsa_experiments::reach_grasp_lift::{Config, Scene, ScriptEpisode, TRIALS, Timetable, Trial, evaluator};
 use farsa_experiments::{
-    AGGREGATION, ANT, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, FORAGING, G1_WALK, GO1_JOYSTICK,
+    AGGREGATION, ANT, ANT_OMNI, BRAITENBERG, DISCRIMINATION, DISCRIMINATION_CYLINDERS, FORAGING, G1_WALK, GO1_JOYSTICK,
     HALF_CHEETAH, HOPPER, HUMANOID, PREDATOR_PREY, WALKER2D,
 };
 use farsa_lab::advanced::{Displacement, Genotype, Lanes, Push, Value, run_episode, run_in_lanes};
@@ -236,7 +236,7 @@ fn predators_and_prey_in_lanes_are_those_alone() {
 fn walkers_in_lanes_are_those_alone() {
     let values = [("episode.steps", Value::Whole(20))];
     let mut all = Vec::new();
-    for experiment in [&HOPPER, &WALKER2D, &HALF_CHEETAH, &ANT, &HUMANOID, &GO1_JOYSTICK, &G1_WALK] {
+    for experiment in [&HOPPER, &WALKER2D, &HALF_CHEETAH, &ANT, &ANT_OMNI, &HUMANOID, &GO1_JOYSTICK, &G1_WALK] {
         let condition = experiment.conditions().first().copied().unwrap_or_default();
         all.extend(trials(experiment, condition, &values, articulated::Batch::instructions()));
     }

@@ -61,7 +61,8 @@ impl SensorPart for BodyVelocity {
         let text = if scene.mobile_robot().is_some() {
             format!("{axis} of the robot's {what}")
         } else {
-            format!("{axis} of the {what} of {}", scene.0.called(self.body.as_ref()))
+            let own = if self.axes == AxesName::Body { " in its axes" } else { "" };
+            format!("{axis} of the {what} of {}{own}", scene.0.called(self.body.as_ref()))
         };
         Quantity::new(text, unit, [0.0, 1.0])
     }

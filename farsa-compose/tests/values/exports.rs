@@ -264,7 +264,10 @@ fn sensors_of_robots_with_joints_are_described() {
         ),
         (
             "kind = \"body-velocity\"\nbody = \"bar\"".into(),
-            &["{x|y|z} of the velocity of bar, m/s", "{x|y|z} of the angular velocity of bar, rad/s"],
+            &[
+                "{x|y|z} of the velocity of bar in its axes, m/s",
+                "{x|y|z} of the angular velocity of bar in its axes, rad/s",
+            ],
         ),
         ("kind = \"height\"\nbody = \"sled\"".into(), &["height of sled, m"]),
         ("kind = \"constant\"\nvalue = -0.2".into(), &["always -0.2, 1"]),

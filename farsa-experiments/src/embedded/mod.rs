@@ -121,6 +121,16 @@ pub static ANT: ModelExperiment = ModelExperiment::new(
     include_str!("../../experiments/locomotion/ant.xml"),
 );
 
+/// The ant of [`ANT`] runs in every direction, with an archive of elites by the place at the end \[Lim2022\].
+///
+/// The archive covers 10 m around the start, because a trial lasts 5 s. Gymnasium's bonus and price of torques are the
+/// fitness.
+pub static ANT_OMNI: ModelExperiment = ModelExperiment::new(
+    "ant-omni",
+    include_str!("../../experiments/locomotion/ant-omni.toml"),
+    include_str!("../../experiments/locomotion/ant.xml"),
+);
+
 /// A body of two legs and two arms walks forward, as [`HOPPER`] \[Towers2024, Humanoid-v5\].
 ///
 /// The observation has positions and velocities. The way is that of the torso instead of the center of mass, and contact

@@ -150,6 +150,7 @@ fn every_experiment_answers_with_the_same_bits() {
             "hopper" | "walker2d" | "half-cheetah" | "ant" | "humanoid" | "go1-joystick" | "g1-walk" => {
                 " --set episode.steps=10 --set strategy.normalise_observations=false"
             }
+            "ant-omni" => " --set episode.steps=10",
             _ => " --set trial.steps=10",
         };
         let words = format!("evaluate {name} --stdin{short}");

@@ -111,6 +111,7 @@ fn subjects() -> Vec<Subject> {
             "walker2d",
             "half-cheetah",
             "ant",
+            "ant-omni",
             "humanoid",
             "go1-joystick",
             "g1-walk",

@@ -33,7 +33,7 @@ mod v0_1 {
         braitenberg: "braitenberg", minimal_cognition: "minimal-cognition", double_pole: "double-pole",
         foraging: "foraging", aggregation: "aggregation", predator_prey: "predator-prey", push_box: "push-box",
         passive_walker: "passive-walker", body_evolution: "body-evolution", hopper: "hopper", walker2d: "walker2d",
-        half_cheetah: "half-cheetah", ant: "ant", humanoid: "humanoid", go1_joystick: "go1-joystick",
+        half_cheetah: "half-cheetah", ant: "ant", ant_omni: "ant-omni", humanoid: "humanoid", go1_joystick: "go1-joystick",
         g1_walk: "g1-walk", random_search: "random-search",
         real_ga: "real-ga", sss: "sss", evolution_strategy: "evolution-strategy", cosyne: "cosyne",
         cma_es: "cma-es", cholesky_cma_es: "cholesky-cma-es", separable_cma_es: "separable-cma-es",
