@@ -2,7 +2,7 @@
 
 use farsa_body::Recorder;
 use farsa_body::robot::Robot;
-use farsa_lab::advanced::{Behavior, Learner, Rollout};
+use farsa_lab::advanced::{Behavior, ExternalControl, Learner, Rollout};
 use farsa_lab::exports::{ControllerExport, Exports, MotorDrive, MotorExport, SensorExport, SensorReading};
 use farsa_lab::{Episode, EpisodeId, Evaluation, Outcome, Task, TaskInfo};
 use farsa_models::mjcf::MjcfOptions;
@@ -61,6 +61,9 @@ impl<W, E: Episode<W>> Episode<W> for ComposedTask<E> {
     #[inline]
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         self.0.judge(world)
+    }
+    fn external(&mut self) -> Result<&mut dyn ExternalControl<W>, String> {
+        self.0.external()
     }
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
         self.0.record_action(world, recorder);

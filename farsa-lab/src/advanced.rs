@@ -8,10 +8,11 @@ pub use crate::error::{FileFault, nearest_name};
 pub use crate::evaluation::TestTrial;
 pub use crate::evaluation::read_genotypes;
 pub use crate::experiment::{
-    Anatomy, Batch, Behavior, Bodies, Case, CaseId, ChannelGroup, Description, Displacement, Failure, Genotype,
-    InLanes, Intervention, Interventions, Iteration, Lanes, Learner, NoWorld, NormalizedController, NotedBehavior,
-    OwnedNetwork, PartNames, PlanarWorld, Protocol, Push, Rescored, Rollout, Source, Value, input_ranges, mean_of_note,
-    mean_of_trials, network_parameters, record_row, resting_network, run_episode, run_in_lanes, seconds,
+    Anatomy, Batch, Behavior, Bodies, Case, CaseId, ChannelGroup, Description, Displacement, ExternalControl, Failure,
+    Genotype, InLanes, Intervention, Interventions, Iteration, Lanes, Learner, NoWorld, NormalizedController,
+    NotedBehavior, OwnedNetwork, PartNames, PlanarWorld, Protocol, Push, Rescored, Rollout, Source, StepResult,
+    Stepper, Value, input_ranges, mean_of_note, mean_of_trials, network_parameters, record_row, resting_network,
+    run_episode, run_in_lanes, seconds,
 };
 pub use crate::limits::Limits;
 pub use crate::live::{LiveModule, LiveSession};
@@ -19,5 +20,7 @@ pub use crate::ranks::{Alone, Ranks};
 pub use crate::run::{
     ENGINE, ExperimentFiles, ImportExperiment, ImportedFile, LeftOut, Part, ReadExperiment, Template, Vocabulary,
 };
+#[cfg(feature = "command")]
+pub use crate::run::{Evaluated, Problem, ProblemOptions, Search};
 pub use crate::run_directory::{GenerationRecord, LogRow, RunChampion, RunDirectory};
 pub use crate::store::{VALUES_VERSION, read_text_file};

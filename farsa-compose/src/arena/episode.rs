@@ -4,7 +4,7 @@ use crate::arena::ArenaWorld;
 use farsa_body::ports::BodyId;
 use farsa_body::robot::Robot;
 use farsa_body::{Pose, Recorder};
-use farsa_lab::advanced::seconds;
+use farsa_lab::advanced::{ExternalControl, seconds};
 use farsa_lab::{Episode, EpisodeId};
 use farsa_nn::Controller as _;
 use farsa_num::{Domain, Stream};
@@ -315,6 +315,11 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
         (self.agents.ledger.is_over() || self.has_event(world)).then(|| self.conclude(world))
     }
 
+    fn external(&mut self) -> Result<&mut dyn ExternalControl<W>, String> {
+        self.agents.check_external()?;
+        Ok(self)
+    }
+
     /// Records the infrared rays: all of the recorded robot, of the others those with a hit. Dead robots have none.
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
         let inputs = self.agents.spec.inputs.len();
@@ -353,5 +358,54 @@ impl<W: ArenaWorld> Episode<W> for ArenaEpisode {
         scalars.push(ledger.earned());
         recorder.scalars(&scalars);
         recorder.tick(seconds(ledger.steps, document.world.time_step));
+    }
+}
+
+/// Control of the only robot. A dead robot senses nothing and rests.
+impl<W: ArenaWorld> ExternalControl<W> for ArenaEpisode {
+    fn channels(&self) -> [usize; 2] {
+        [self.agents.x.len(), self.agents.y.len()]
+    }
+
+    fn observe(&mut self, world: &W) {
+        let alive = self.is_alive(0);
+        let Setup { members, foraging, .. } = &mut self.setup;
+        let Agents { spec, x, .. } = &mut self.agents;
+        let Some(member) = members.first_mut() else { return };
+        if let Some((_, field)) = foraging {
+            let sensors = member.equipment.sensors.iter_mut();
+            sensors.for_each(|sensor| sensor.kind_mut().feel(&field.robots()[0]));
+        }
+        if alive {
+            member.equipment.sense(&spec.sensors, world, x);
+        } else {
+            x.fill(0.0);
+        }
+    }
+
+    fn observation(&self) -> &[f32] {
+        &self.agents.x
+    }
+
+    fn actuate(&mut self, action: &[f32], world: &mut W) {
+        let alive = self.is_alive(0);
+        if alive {
+            self.agents.choose(action);
+        }
+        let Agents { spec, y, .. } = &mut self.agents;
+        let Some(member) = self.setup.members.first_mut() else { return };
+        if alive {
+            member.equipment.drive(&spec.motors, y, world);
+        } else {
+            member.rest(&spec.motors, y, world);
+        }
+    }
+
+    fn earned(&self) -> f64 {
+        self.agents.ledger.earned()
+    }
+
+    fn is_truncated(&self, world: &W) -> bool {
+        self.agents.ledger.is_truncated() && !self.has_event(world)
     }
 }

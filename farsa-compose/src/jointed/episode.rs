@@ -3,7 +3,7 @@
 use farsa_body::ports::BodyId;
 use farsa_body::robot::{Joint, JointKind, MassProperties, Robot, Segment};
 use farsa_body::{Pose, Recorder};
-use farsa_lab::advanced::seconds;
+use farsa_lab::advanced::{ExternalControl, seconds};
 use farsa_lab::{Episode, EpisodeId};
 use farsa_models::mjcf::MjcfOptions;
 use farsa_nn::Controller as _;
@@ -221,6 +221,11 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         Some(self.agents.ledger.conclude())
     }
 
+    fn external(&mut self) -> Result<&mut dyn ExternalControl<W>, String> {
+        self.agents.check_external()?;
+        Ok(self)
+    }
+
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         let Agents { document, ledger, networks, x, y, .. } = &self.agents;
         recorder.sensors(x);
@@ -245,5 +250,33 @@ impl<W: SpatialWorld> Episode<W> for JointedEpisode {
         scalars.push(ledger.earned());
         recorder.scalars(&scalars);
         recorder.tick(seconds(ledger.steps, document.world.time_step));
+    }
+}
+
+impl<W: SpatialWorld> ExternalControl<W> for JointedEpisode {
+    fn channels(&self) -> [usize; 2] {
+        [self.agents.x.len(), self.agents.y.len()]
+    }
+
+    fn observe(&mut self, world: &W) {
+        let Agents { spec, x, .. } = &mut self.agents;
+        self.setup.equipment.sense(&spec.sensors, world, x);
+    }
+
+    fn observation(&self) -> &[f32] {
+        &self.agents.x
+    }
+
+    fn actuate(&mut self, action: &[f32], world: &mut W) {
+        self.agents.choose(action);
+        self.setup.equipment.drive(&self.agents.spec.motors, &self.agents.y, world);
+    }
+
+    fn earned(&self) -> f64 {
+        self.agents.ledger.earned()
+    }
+
+    fn is_truncated(&self, world: &W) -> bool {
+        self.agents.ledger.is_truncated() && !self.has_event(world)
     }
 }

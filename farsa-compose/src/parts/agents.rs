@@ -112,6 +112,22 @@ impl Agents {
         loaded
     }
 
+    /// Checks that actions can come from outside.
+    ///
+    /// # Errors
+    /// Returns the reason if they cannot.
+    pub(crate) fn check_external(&self) -> Result<(), String> {
+        match self.networks.len() {
+            1 => Ok(()),
+            robots => Err(format!("it has {robots} robots, and an action is for one")),
+        }
+    }
+
+    /// Stores an action within the range of a network's outputs, as if the network had computed it.
+    pub(crate) fn choose(&mut self, action: &[f32]) {
+        self.y.iter_mut().zip(action).for_each(|(y, action)| *y = action.clamp(0.0, 1.0));
+    }
+
     /// Builds the outcome of a trial.
     pub(crate) fn outcome(&self) -> Outcome {
         if self.ledger.failed {

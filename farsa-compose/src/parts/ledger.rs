@@ -179,6 +179,11 @@ impl Ledger {
         self.failed || self.steps >= self.most_steps || self.has_failed() || self.one_holds(&self.end)
     }
 
+    /// Checks that the trial is over by the number of its steps, and by no condition.
+    pub(crate) fn is_truncated(&self) -> bool {
+        !self.failed && self.steps >= self.most_steps && !self.has_failed() && !self.one_holds(&self.end)
+    }
+
     /// Checks if a condition of failure holds.
     fn has_failed(&self) -> bool {
         self.one_holds(&self.failure)

@@ -173,6 +173,28 @@ impl<C: Controller> ReachEpisode<C> {
         &self.y
     }
 
+    /// Reads the sensors. The label is the phase after the previous step, or an output of the previous step.
+    pub(crate) fn sense<W>(&mut self, world: &W)
+    where
+        W: Kinematics + Joints + Contacts + Handles<Body = BodyId, Joint = JointId> + ?Sized,
+    {
+        let phase = self.judge.trial().phase;
+        self.senses.set_label(if self.wrong_label { phase.following() } else { phase });
+        if let Some(labels) = self.next_labels() {
+            self.senses.set_own_labels(labels);
+        }
+        self.senses.read(world, &mut self.x);
+    }
+
+    /// Drives the motors by an action instead of the controller, within the range of its outputs.
+    pub(crate) fn actuate<W>(&mut self, action: &[f32], world: &mut W)
+    where
+        W: Joints + Actuated + Handles<Joint = JointId, Actuator = ActuatorId> + ?Sized,
+    {
+        self.y.iter_mut().zip(action).for_each(|(y, action)| *y = action.clamp(0.0, 1.0));
+        self.motors.drive(&self.y[..OUTPUTS], world);
+    }
+
     /// The outputs of the last step for labels.
     fn next_labels(&self) -> Option<[f32; LABELS]> {
         self.y.get(OUTPUTS..)?.first_chunk().copied()
@@ -198,14 +220,8 @@ where
         self.y.fill(0.0);
     }
 
-    /// Senses, computes and acts. The label is the phase after the previous step, or an output of the previous step.
     fn act(&mut self, world: &mut W) {
-        let phase = self.judge.trial().phase;
-        self.senses.set_label(if self.wrong_label { phase.following() } else { phase });
-        if let Some(labels) = self.next_labels() {
-            self.senses.set_own_labels(labels);
-        }
-        self.senses.read(world, &mut self.x);
+        self.sense(world);
         self.controller.step(&self.x, &mut self.y);
         self.motors.drive(&self.y[..OUTPUTS], world);
     }

@@ -14,8 +14,8 @@ use crate::reach_grasp_lift::parameters::Ranges;
 use crate::reach_grasp_lift::scene::Scene;
 use crate::reach_grasp_lift::schema::{EpisodeRecorder, NetworkEpisode};
 use farsa_lab::advanced::{
-    Anatomy, Behavior, ChannelGroup, Description, Intervention, Interventions, NormalizedController, NotedBehavior,
-    Protocol, Rollout, input_ranges,
+    Anatomy, Behavior, ChannelGroup, Description, ExternalControl, Intervention, Interventions, NormalizedController,
+    NotedBehavior, Protocol, Rollout, input_ranges,
 };
 use farsa_lab::exports::{ControllerExport, Exports, NetworkExport, StartExport};
 use farsa_lab::{Combination, Episode, EpisodeId, Error, Evaluation, Note, Outcome, Task, TaskInfo};
@@ -106,8 +106,47 @@ where
         Episode::judge(&mut self.episode, world)
     }
 
+    fn external(&mut self) -> Result<&mut dyn ExternalControl<W>, String> {
+        Ok(self)
+    }
+
     fn record(&self, world: &W, recorder: &mut dyn Recorder) {
         self.episode_recorder.record(world, &self.episode, recorder);
+    }
+}
+
+/// The fitness so far is that of this trial alone, within the caps of an individual.
+impl<W> ExternalControl<W> for ReachTask
+where
+    W: Kinematics
+        + Joints
+        + Actuated
+        + Contacts
+        + Arrange
+        + Handles<Body = BodyId, Joint = JointId, Actuator = ActuatorId>,
+{
+    fn channels(&self) -> [usize; 2] {
+        [self.episode.sensed().len(), self.episode.done().len()]
+    }
+
+    fn observe(&mut self, world: &W) {
+        self.episode.sense(world);
+    }
+
+    fn observation(&self) -> &[f32] {
+        self.episode.sensed()
+    }
+
+    fn actuate(&mut self, action: &[f32], world: &mut W) {
+        self.episode.actuate(action, world);
+    }
+
+    fn earned(&self) -> f64 {
+        self.episode.judge().trial().rewards.total()
+    }
+
+    fn is_truncated(&self, _: &W) -> bool {
+        !self.episode.judge().trial().fallen
     }
 }
 

@@ -16,4 +16,5 @@ mod normalised;
 mod protocols;
 mod reach_postures;
 mod reach_scene;
+mod stepping;
 mod walking;

@@ -63,20 +63,26 @@ pub fn main_on_ranks(experiments: &[&dyn Experiment], ranks: &dyn Ranks) -> Exit
 impl Laboratory<'_> {
     /// Runs the command with the arguments of the process over this laboratory, as [`main`] does.
     pub fn main(&self) -> ExitCode {
-        execute(self, &Alone)
+        ExitCode::from(execute(self, &Alone, std::env::args_os().collect()))
     }
 
     /// Runs the command on one of several ranks, as [`main_on_ranks`] does.
     pub fn main_on_ranks(&self, ranks: &dyn Ranks) -> ExitCode {
-        execute(self, ranks)
+        ExitCode::from(execute(self, ranks, std::env::args_os().collect()))
+    }
+
+    /// Runs the command with the given words, of which the first is the name of the program, and returns the exit code.
+    pub fn command(&self, words: impl IntoIterator<Item = impl Into<OsString>>) -> u8 {
+        execute(self, &Alone, words.into_iter().map(Into::into).collect())
     }
 }
 
-fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
-    let program = program();
+/// Runs a command line on one rank and returns the exit code.
+fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks, words: Vec<OsString>) -> u8 {
+    let program = program(words.first());
     let exchange = Rc::new(Exchange::new(ranks));
     let sharing = exchange.sharing().unwrap_or(1);
-    let cli = match read(&program, laboratory, std::env::args_os()) {
+    let cli = match read(&program, laboratory, words) {
         Ok(cli) => cli,
         Err(error) => {
             let text = error.to_string();
@@ -85,19 +91,19 @@ fn execute(laboratory: &Laboratory<'_>, ranks: &dyn Ranks) -> ExitCode {
                 // Help and version are printed here, too, with exit code 0. A failure to print cannot be reported.
                 let _ = error.print();
             }
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+            return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
     let invocation = Invocation { program: &program, laboratory, quiet: cli.quiet, exchange, sharing };
     let followed = awaits_orders(&cli.command);
     let result = match invocation.take_part(&cli.command) {
-        Ok(Part::Followed(code)) => return ExitCode::from(code),
+        Ok(Part::Followed(code)) => return code,
         Ok(Part::Leads) => invocation.execute(cli.command),
-        Err(error) => return ExitCode::from(invocation.report(Err(error))),
+        Err(error) => return invocation.report(Err(error)),
     };
     let code = invocation.report(result);
     let dismissed = if followed { invocation.dismiss(code) } else { Ok(()) };
-    ExitCode::from(dismissed.map_or_else(|error| invocation.report(Err(error)), |()| code))
+    dismissed.map_or_else(|error| invocation.report(Err(error)), |()| code)
 }
 
 /// Parses a command line, whose first word is the program.
@@ -122,8 +128,8 @@ pub(crate) fn read_by(
 }
 
 /// Gets the name of the program.
-fn program() -> String {
-    let path = std::env::args_os().next().map(PathBuf::from);
+fn program(first: Option<&OsString>) -> String {
+    let path = first.map(PathBuf::from);
     let name = path.and_then(|path| path.file_name()?.to_str().map(str::to_owned));
     // The suffix of Windows is not typed.
     name.map_or_else(|| "farsa".into(), |name| name.trim_end_matches(std::env::consts::EXE_SUFFIX).into())

@@ -4,6 +4,8 @@ use farsa_body::Recorder;
 use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, World};
 use serde::{Deserialize, Serialize};
 
+use crate::experiment::stepper::ExternalControl;
+
 /// Identifies an episode of a run.
 ///
 /// These numbers select the streams that all random numbers of the episode are drawn from.
@@ -52,6 +54,14 @@ pub trait Episode<W: ?Sized> {
     /// mutable, since some surroundings react to the robot, such as the ground under a swinging foot.
     fn judge(&mut self, world: &mut W) -> Option<f64>;
 
+    /// Gives access to sensors and motors without the controller, for a [`Stepper`](crate::advanced::Stepper).
+    ///
+    /// # Errors
+    /// Returns the reason if the actions cannot come from outside. This is the default.
+    fn external(&mut self) -> Result<&mut dyn ExternalControl<W>, String> {
+        Err("its episode takes no actions from outside".into())
+    }
+
     /// Records the rays of sensors. This is called after [`act`](Self::act) and before the world steps.
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
         let _ = (world, recorder);
@@ -75,6 +85,9 @@ impl<W: ?Sized, E: Episode<W> + ?Sized> Episode<W> for &mut E {
     }
     fn judge(&mut self, world: &mut W) -> Option<f64> {
         (**self).judge(world)
+    }
+    fn external(&mut self) -> Result<&mut dyn ExternalControl<W>, String> {
+        (**self).external()
     }
     fn record_action(&self, world: &W, recorder: &mut dyn Recorder) {
         (**self).record_action(world, recorder);

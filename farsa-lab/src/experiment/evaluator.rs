@@ -19,6 +19,7 @@ use crate::experiment::lanes::Lanes;
 use crate::experiment::outcome::{Combination, Description, Outcome};
 use crate::experiment::parameter::Parameter;
 use crate::experiment::protocol::{CaseId, Protocol};
+use crate::experiment::stepper::{Stepper, not_stepped};
 
 /// Data of a task under its settings: parameters, recording, trials, and what tests can do with it.
 ///
@@ -304,6 +305,15 @@ pub trait Evaluator: Task {
     /// Gives access to the training for the strategy [`Learning`](crate::strategy::Learning), if there is any.
     fn learner(&mut self) -> Option<&mut dyn Learner> {
         None
+    }
+
+    /// Converts the evaluator into one world per lane, which the caller steps with its own actions.
+    ///
+    /// # Errors
+    /// Returns [`Error::Usage`] with the reason if the experiment cannot be stepped, which is the default.
+    fn into_stepper(self: Box<Self>, lanes: Lanes) -> Result<Box<dyn Stepper>, Error> {
+        let _ = lanes;
+        Err(not_stepped("it evaluates complete trials"))
     }
 }
 

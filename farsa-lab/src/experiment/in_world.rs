@@ -12,6 +12,7 @@ use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
 use crate::experiment::outcome::Outcome;
+use crate::experiment::stepper::{Stepper, in_batch, in_one_world, not_stepped};
 
 /// Episode of a task. It loads parameters before the start, and has an outcome after the end.
 pub trait Rollout: Task {
@@ -39,6 +40,8 @@ trait LaneRunner<R>: Send {
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
         done: &mut dyn FnMut(usize, Outcome),
     );
+
+    fn into_stepper(self: Box<Self>) -> Result<Box<dyn Stepper>, Error>;
 }
 
 struct InBatch<B, R> {
@@ -70,8 +73,13 @@ impl<W: ?Sized, R: Episode<W>> Episode<W> for Numbered<R> {
 impl<B, R> LaneRunner<R> for InBatch<B, R>
 where
     B: Batch + Send + 'static,
-    R: Rollout + for<'a> Episode<B::Lane<'a>>,
+    R: Rollout + for<'a> Episode<B::Lane<'a>> + 'static,
 {
+    fn into_stepper(self: Box<Self>) -> Result<Box<dyn Stepper>, Error> {
+        let Self { batch, episodes } = *self;
+        in_batch(batch, episodes.into_iter().map(|numbered| numbered.limited.episode).collect())
+    }
+
     fn run_in_lanes<'p>(
         &mut self,
         next: &mut dyn FnMut() -> Option<Evaluation<'p>>,
@@ -191,8 +199,8 @@ impl<W: Send, R: Rollout> Task for InWorld<W, R> {
 
 impl<W, R> Evaluator for InWorld<W, R>
 where
-    W: World + Send,
-    R: Rollout + Episode<W>,
+    W: World + Send + 'static,
+    R: Rollout + Episode<W> + 'static,
 {
     fn evaluate(&mut self, evaluation: Evaluation<'_>, mut recorder: Option<&mut dyn Recorder>) -> Outcome {
         if !self.rollout.load(&evaluation) {
@@ -241,12 +249,30 @@ where
     fn in_lanes(&mut self) -> Option<&mut dyn InLanes> {
         if self.make.is_some() { Some(self) } else { None }
     }
+
+    fn into_stepper(self: Box<Self>, lanes: Lanes) -> Result<Box<dyn Stepper>, Error> {
+        let Self { world, mut rollout, make, .. } = *self;
+        if rollout.info().populations.len() > 1 {
+            let populations = rollout.info().populations.len();
+            return Err(not_stepped(&format!("it has {populations} populations, and an action is for one agent")));
+        }
+        if rollout.bodies().is_some() {
+            return Err(not_stepped("its bodies evolve with its controllers"));
+        }
+        let refused = rollout.external().err();
+        match (refused, make) {
+            (Some(why), _) => Err(not_stepped(&why)),
+            (None, _) if lanes.count() == 1 => in_one_world(world, rollout),
+            (None, Some(make)) => make(lanes, &rollout)?.into_stepper(),
+            (None, None) => Err(Error::Usage(format!("{} lanes; this experiment has 1 only", lanes.count()))),
+        }
+    }
 }
 
 impl<W, R> InLanes for InWorld<W, R>
 where
-    W: World + Send,
-    R: Rollout + Episode<W>,
+    W: World + Send + 'static,
+    R: Rollout + Episode<W> + 'static,
 {
     fn use_lanes(&mut self, lanes: Lanes) -> Result<(), Error> {
         self.lanes = match &self.make {

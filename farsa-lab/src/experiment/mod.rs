@@ -50,6 +50,8 @@ mod rescored;
 mod setting;
 /// Configuration of a run: settings and their values.
 pub(crate) mod settings;
+/// Episodes that a caller steps with its own actions.
+pub(crate) mod stepper;
 /// Values of settings.
 mod value;
 
@@ -78,3 +80,4 @@ pub use parameter::Parameter;
 pub use protocol::{Case, CaseId, Protocol};
 pub use rescored::Rescored;
 pub use settings::{Setting, Settings, Source, Value};
+pub use stepper::{ExternalControl, StepResult, Stepper};

@@ -37,6 +37,9 @@ pub(crate) mod plan;
 /// A pool of threads that run trials.
 #[cfg(feature = "command")]
 pub(crate) mod pool;
+/// An experiment for programs that evaluate, step and search by themselves.
+#[cfg(feature = "command")]
+mod problem;
 /// Progress on a terminal or in plain lines.
 #[cfg(feature = "command")]
 pub(crate) mod progress;
@@ -80,5 +83,7 @@ mod wrong_configuration;
 pub use experiment::{Experiment, SimpleExperiment};
 pub use imported_file::{ImportedFile, LeftOut};
 pub use laboratory::{ExperimentFiles, ImportExperiment, Laboratory, ReadExperiment, Template};
+#[cfg(feature = "command")]
+pub use problem::{Evaluated, Problem, ProblemOptions, Search};
 pub use vocabulary::{Part, Vocabulary};
 pub use world_choice::ENGINE;

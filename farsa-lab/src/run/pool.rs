@@ -53,7 +53,29 @@ impl Maker<'_> {
     }
 }
 
+/// A pool between two rounds, without ranks. Another thread may take it.
+pub(crate) struct IdlePool<'e> {
+    evaluators: Vec<Box<dyn Evaluator>>,
+    info: TaskInfo,
+    genotype: Genotype,
+    maker: Maker<'e>,
+}
+
+impl<'e> IdlePool<'e> {
+    /// Makes the pool evaluate again.
+    pub(crate) fn awake(self) -> Pool<'e> {
+        let Self { evaluators, info, genotype, maker } = self;
+        Pool { evaluators, info, genotype, maker, exchange: Rc::default() }
+    }
+}
+
 impl<'e> Pool<'e> {
+    /// Detaches the pool from its ranks.
+    pub(crate) fn idle(self) -> IdlePool<'e> {
+        let Self { evaluators, info, genotype, maker, .. } = self;
+        IdlePool { evaluators, info, genotype, maker }
+    }
+
     /// Prepares a pool of at least one thread.
     ///
     /// # Errors

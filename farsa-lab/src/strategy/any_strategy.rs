@@ -17,9 +17,9 @@ use crate::experiment::genotype::Genotype;
 #[non_exhaustive]
 pub enum AnyStrategy {
     /// Over 16-bit words.
-    Words(Box<dyn Strategy>),
+    Words(Box<dyn Strategy + Send>),
     /// Over reals.
-    Reals(Box<dyn Strategy<f64>>),
+    Reals(Box<dyn Strategy<f64> + Send>),
 }
 
 /// The same of both kinds.
@@ -34,12 +34,12 @@ macro_rules! each {
 
 impl AnyStrategy {
     /// Wraps a strategy over integer genes.
-    pub fn from_words(strategy: impl Strategy + 'static) -> Self {
+    pub fn from_words(strategy: impl Strategy + Send + 'static) -> Self {
         Self::Words(Box::new(strategy))
     }
 
     /// Wraps a strategy over real genes.
-    pub fn from_reals(strategy: impl Strategy<f64> + 'static) -> Self {
+    pub fn from_reals(strategy: impl Strategy<f64> + Send + 'static) -> Self {
         Self::Reals(Box::new(strategy))
     }
 

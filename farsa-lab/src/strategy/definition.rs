@@ -141,7 +141,7 @@ impl StrategyStart<'_> {
     /// [`Error::Usage`] if it is about no setting.
     pub fn words<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
-        S: Strategy + Snapshot + 'static,
+        S: Strategy + Snapshot + Send + 'static,
     {
         Ok(if self.populations == 1 {
             AnyStrategy::from_words(search(self.seed).map_err(|error| self.refused(&error))?)
@@ -174,7 +174,7 @@ impl StrategyStart<'_> {
     /// [`Error::Usage`] if it is about no setting.
     pub fn reals<S>(&self, search: impl Fn(u64) -> Result<S, EvoError>) -> Result<AnyStrategy, Error>
     where
-        S: Strategy<f64> + Snapshot + 'static,
+        S: Strategy<f64> + Snapshot + Send + 'static,
     {
         Ok(if self.populations == 1 {
             AnyStrategy::from_reals(search(self.seed).map_err(|error| self.refused(&error))?)

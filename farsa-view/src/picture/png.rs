@@ -24,6 +24,11 @@ pub(crate) fn png(picture: &Picture, camera: Camera, size: [u32; 2]) -> Result<V
     encode(std::slice::from_ref(picture), &picture.window(camera, size), size, None)
 }
 
+/// Returns the pixels of a picture of `size` [pixels], row by row from the upper left corner.
+pub(crate) fn rgb(picture: &Picture, camera: Camera, size: [u32; 2]) -> Vec<u8> {
+    pixels(picture, &picture.window(camera, size), size).as_flattened().to_vec()
+}
+
 /// Encodes pictures through one window, as an animation if each is shown for the given time [ms].
 pub(super) fn encode(
     pictures: &[Picture],

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::picture::animation::animation;
 use crate::picture::camera::Camera;
 use crate::picture::moment::Picture;
-use crate::picture::png::png;
+use crate::picture::png::{png, rgb};
 use crate::picture::svg::svg;
 
 impl Picture {
@@ -14,6 +14,12 @@ impl Picture {
     /// Returns [`Error::Size`] if the size is invalid.
     pub fn png(&self, camera: Camera, size: [u32; 2]) -> Result<Vec<u8>, Error> {
         png(self, camera, size)
+    }
+
+    /// Renders the red, green and blue bytes of `size` [pixels], row by row from the upper left corner, as in
+    /// [`png`](Self::png).
+    pub fn rgb(&self, camera: Camera, size: [u32; 2]) -> Vec<u8> {
+        rgb(self, camera, size)
     }
 
     /// Renders an animated PNG of `size` [pixels]. Each picture is shown for the given time [ms].

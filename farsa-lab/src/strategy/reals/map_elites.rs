@@ -105,7 +105,7 @@ fn search(start: &StrategyStart<'_>, name: &str, config: &MapElitesConfig) -> Re
     over(start, config, &GridCells::new(ranges.to_vec(), parts).map_err(refused)?)
 }
 
-fn over<C: Cells + Clone + 'static>(
+fn over<C: Cells + Clone + Send + 'static>(
     start: &StrategyStart<'_>,
     config: &MapElitesConfig,
     cells: &C,
