@@ -159,7 +159,7 @@ fn needed(manifest: &str) -> BTreeSet<&str> {
 #[test]
 fn lock_files_of_what_is_no_member_know_what_our_crates_need() {
     let mut checked = 0;
-    for lock in ["farsa-lab-mpi", "farsa-live", "benches/bbob", "firmware", "ci-nostd"]
+    for lock in ["farsa-lab-mpi", "farsa-live", "farsa-python", "benches/bbob", "firmware", "ci-nostd"]
         .map(|folder| format!("{folder}/Cargo.lock"))
     {
         let text = read(&lock);
@@ -233,7 +233,7 @@ fn all_lock_files_decode_with_the_same_versions() {
         assert!(workspace.contains_key(name), "Cargo.lock has no {name}");
     }
     let mut checked = 0;
-    for folder in ["farsa-lab-mpi", "farsa-live", "fuzz", "firmware", "ci-nostd"] {
+    for folder in ["farsa-lab-mpi", "farsa-live", "farsa-python", "fuzz", "firmware", "ci-nostd"] {
         let lock = format!("{folder}/Cargo.lock");
         for (name, versions) in decoders(&lock) {
             assert!(
