@@ -13,11 +13,12 @@ use crate::error::Error;
 use crate::experiment::controller_export::{ControllerExport, MotorDrive, MotorExport, SensorExport, SensorReading};
 use crate::experiment::episode::{Episode, EpisodeId, seconds};
 use crate::experiment::evaluator::{Evaluation, Exports, Task, TaskInfo};
-use crate::experiment::in_world::{InWorld, Rollout};
+use crate::experiment::in_world::InWorld;
 use crate::experiment::lanes::Lanes;
 use crate::experiment::network_export::NetworkExport;
 use crate::experiment::neurocontroller::Neurocontroller;
 use crate::experiment::outcome::{Combination, Note, Outcome};
+use crate::experiment::rollout::Rollout;
 
 /// A world with wheeled robots. This can be a single arena, a lane of a batch, or an arena in rapier.
 pub trait PlanarWorld:

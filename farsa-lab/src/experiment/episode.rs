@@ -4,7 +4,7 @@ use farsa_body::Recorder;
 use farsa_body::ports::{ActuatorId, BodyId, Handles, JointId, World};
 use serde::{Deserialize, Serialize};
 
-use crate::experiment::stepper::ExternalControl;
+use crate::experiment::external::ExternalControl;
 
 /// Identifies an episode of a run.
 ///

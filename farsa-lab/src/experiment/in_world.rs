@@ -12,26 +12,9 @@ use crate::experiment::in_lanes::{Batch, run_in_lanes};
 use crate::experiment::lanes::Lanes;
 use crate::experiment::limited::Limited;
 use crate::experiment::outcome::Outcome;
-use crate::experiment::stepper::{Stepper, in_batch, in_one_world, not_stepped};
-
-/// Episode of a task. It loads parameters before the start, and has an outcome after the end.
-pub trait Rollout: Task {
-    /// Loads the parameters. Returns false if they do not fit the task.
-    fn load(&mut self, evaluation: &Evaluation<'_>) -> bool;
-
-    /// Records the parameters before the first step: those of a network, for the page's picture of it.
-    fn record_parameters(&self, recorder: &mut dyn Recorder) {
-        let _ = recorder;
-    }
-
-    /// Builds the outcome of the episode that has ended.
-    fn outcome(&self) -> Outcome;
-
-    /// Gives access to the training for the strategy [`Learning`](crate::strategy::Learning), if there is any.
-    fn learner(&mut self) -> Option<&mut dyn Learner> {
-        None
-    }
-}
+use crate::experiment::rollout::Rollout;
+use crate::experiment::stepped::{in_batch, in_one_world};
+use crate::experiment::stepper::{Stepper, not_stepped};
 
 /// An episode in each lane of a batch.
 trait LaneRunner<R>: Send {

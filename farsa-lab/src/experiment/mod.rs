@@ -16,6 +16,8 @@ pub(crate) mod disturbances;
 pub(crate) mod episode;
 /// Tasks and evaluators: parameters in, outcomes out.
 pub(crate) mod evaluator;
+/// Control of an episode from outside.
+pub(crate) mod external;
 /// Decoding of genes into parameters.
 pub(crate) mod genotype;
 /// Loop over many episodes in the lanes of a batch of worlds.
@@ -46,11 +48,15 @@ pub(crate) mod parameter;
 pub(crate) mod protocol;
 /// An existing experiment with another fitness.
 mod rescored;
+/// An episode of a task.
+mod rollout;
 /// A setting: its key, default, and allowed values.
 mod setting;
 /// Configuration of a run: settings and their values.
 pub(crate) mod settings;
-/// Episodes that a caller steps with its own actions.
+/// Episodes that a caller steps, in one world or in lanes.
+mod stepped;
+/// Worlds that a caller steps with its own actions.
 pub(crate) mod stepper;
 /// Values of settings.
 mod value;
@@ -65,9 +71,10 @@ pub use controller_export::{
 pub use disturbance::{Displacement, Push};
 pub use episode::{Episode, EpisodeId, NoWorld, record_row, run_episode, seconds};
 pub use evaluator::{Bodies, Evaluation, Evaluator, Exports, InLanes, Iteration, Learner, Task, TaskInfo};
+pub use external::ExternalControl;
 pub use genotype::Genotype;
 pub use in_lanes::{Batch, run_in_lanes};
-pub use in_world::{InWorld, Rollout};
+pub use in_world::InWorld;
 pub use intervention::{Intervention, input_ranges};
 pub use interventions::Interventions;
 pub use lanes::Lanes;
@@ -79,5 +86,6 @@ pub use outcome::{ChannelGroup, Combination, Description, Failure, Note, Outcome
 pub use parameter::Parameter;
 pub use protocol::{Case, CaseId, Protocol};
 pub use rescored::Rescored;
+pub use rollout::Rollout;
 pub use settings::{Setting, Settings, Source, Value};
-pub use stepper::{ExternalControl, StepResult, Stepper};
+pub use stepper::{StepResult, Stepper};
