@@ -69,11 +69,11 @@ pub(crate) fn rows<T: numpy::Element + Copy>(matrix: &PyReadonlyArray2<'_, T>) -
 }
 
 /// Builds a matrix of rows of equal length.
-pub(crate) fn matrix<'py, T: numpy::Element>(
-    py: Python<'py>,
+pub(crate) fn matrix<T: numpy::Element>(
+    py: Python<'_>,
     columns: usize,
     rows: Vec<Vec<T>>,
-) -> PyResult<Bound<'py, PyArray2<T>>> {
+) -> PyResult<Bound<'_, PyArray2<T>>> {
     let count = rows.len();
     PyArray1::from_vec(py, rows.into_iter().flatten().collect()).reshape([count, columns])
 }
@@ -83,7 +83,7 @@ type Trial<'py> = (Vec<f64>, u32, bool, Bound<'py, PyDict>);
 /// An individual as scores, the reason of its failure and trials.
 type Individual<'py> = (Vec<f64>, Option<String>, Vec<Trial<'py>>);
 
-fn trial<'py>(py: Python<'py>, outcome: Outcome) -> PyResult<Trial<'py>> {
+fn trial(py: Python<'_>, outcome: Outcome) -> PyResult<Trial<'_>> {
     let notes = PyDict::new(py);
     for (name, note) in outcome.notes {
         match note {

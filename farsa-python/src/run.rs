@@ -10,6 +10,9 @@ use pyo3::types::PyDict;
 use crate::errors::exception;
 use crate::problem::{dictionary, matrix};
 
+/// Champions as their generation, individuals, fitness and parameters.
+type Champion<'py> = (u32, Vec<u32>, Vec<f64>, Bound<'py, PyArray2<f32>>);
+
 /// Directory of a run.
 #[pyclass(frozen, module = "farsa_gym")]
 pub(crate) struct Run {
@@ -51,7 +54,7 @@ impl Run {
     }
 
     /// Returns the champion of each population: generation, individuals, fitness and parameters.
-    fn champion<'py>(&self, py: Python<'py>) -> PyResult<(u32, Vec<u32>, Vec<f64>, Bound<'py, PyArray2<f32>>)> {
+    fn champion<'py>(&self, py: Python<'py>) -> PyResult<Champion<'py>> {
         let RunChampion { generation, individuals, fitness, parameters, .. } =
             self.run.champion().map_err(|error| exception(&error))?;
         let columns = parameters.first().map_or(0, Vec::len);

@@ -107,7 +107,7 @@ fn threads_for(wanted: usize) -> usize {
 
 impl Worlds {
     /// Runs the prepared jobs without the interpreter's lock, and copies the observations into the array.
-    fn run<'py>(&self, py: Python<'py>, state: &mut State) -> PyResult<()> {
+    fn run(&self, py: Python<'_>, state: &mut State) -> PyResult<()> {
         if let Err(why) = py.detach(|| state.run()) {
             let error = PyRuntimeError::new_err(format!("a step of {} environments failed: {why}", self.count));
             state.broken = Some(why);
