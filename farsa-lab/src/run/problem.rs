@@ -171,15 +171,14 @@ impl Problem<'_> {
     /// # Errors
     /// Returns [`Error::Usage`] for parameters of another number, several populations and normalized observations.
     pub fn evaluate(&mut self, parameters: &[Vec<f32>], id: EpisodeId) -> Result<Vec<Evaluated>, Error> {
-        let idle = match self.pool.take() {
-            Some(pool) => pool,
-            None => {
-                if self.plan.no_observations()?.is_some() {
-                    let why = "observations are normalized by those of a run; set it to false";
-                    return Err(Error::setting(NORMALISE, why));
-                }
-                Pool::new(&self.plan, self.workers.0, self.workers.1)?.idle()
+        let idle = if let Some(pool) = self.pool.take() {
+            pool
+        } else {
+            if self.plan.no_observations()?.is_some() {
+                let why = "observations are normalized by those of a run; set it to false";
+                return Err(Error::setting(NORMALISE, why));
             }
+            Pool::new(&self.plan, self.workers.0, self.workers.1)?.idle()
         };
         let mut pool = idle.awake();
         let result = evaluate(&mut pool, self.plan.experiment.name(), parameters, id);
