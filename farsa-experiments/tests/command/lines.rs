@@ -146,11 +146,10 @@ fn every_experiment_answers_with_the_same_bits() {
         let short = match name {
             "passive-walker" => " --set trial.steps=200 --set trial.count=1",
             "double-pole" | "minimal-cognition" => "",
-            "lamp.toml" => " --set episode.steps=10",
+            "lamp.toml" | "ant-omni" => " --set episode.steps=10",
             "hopper" | "walker2d" | "half-cheetah" | "ant" | "humanoid" | "go1-joystick" | "g1-walk" => {
                 " --set episode.steps=10 --set strategy.normalise_observations=false"
             }
-            "ant-omni" => " --set episode.steps=10",
             _ => " --set trial.steps=10",
         };
         let words = format!("evaluate {name} --stdin{short}");
