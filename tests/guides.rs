@@ -439,8 +439,7 @@ fn follow(name: &str, builder: Builder) {
                 fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
                 fs::write(path, text).expect("a program");
             }
-            // `tests/wasm/run` compiles the program to WebAssembly.
-            "sh" if block.file == "pages" => {}
+            "sh" if block.file == "pages" => {} // `tests/wasm/run` compiles the program.
             "sh" if checked && !files.is_empty() => readers::check(&project),
             "sh" => {
                 let end = place.join("place");

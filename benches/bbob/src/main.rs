@@ -7,8 +7,8 @@
 use std::process::ExitCode;
 
 use coco_rs::{LogLevel, Suite, suite};
-use farsa_evo::{EvoError, Fitness, Strategy};
 use farsa_evo::covariance::{CmaEsConfig, CmaEsRestarts, CmaEsRestartsConfig, RestartSchedule};
+use farsa_evo::{EvoError, Fitness, Strategy};
 
 const FUNCTIONS: &str = "1-2,5-18";
 
